@@ -241,24 +241,23 @@ bool ActiveEdges::isHeld(const Triangle& triangle) {
            });
 }
 
-// No triangle slides beside an unwatched edge, and no flux over that edge could continue. If no volume changes around
-// a triangle, its heights stay, and it does not start to slide. With a band it may start, because sand that flows
-// through a vertex sets the sand that it touches in motion.
+// No triangle slides beside an unwatched edge. If no sand flows around a triangle, its heights stay, and it does not
+// start to slide. Sand that flows through a vertex may set the sand that it touches in motion, or keep it in motion.
 bool ActiveEdges::sweep(const VertexSand& layer, const Slopes& slopes, Weights& weights, double momentum) {
     std::size_t known = 0;
     do {
         const std::size_t first = std::exchange(known, sand_.facetCount());
-        for (const std::int32_t facet : sand_.slide(held_ != nullptr, band_, first)) {
+        for (const std::int32_t facet : sand_.slide(held_ != nullptr, band_, momentum, first)) {
             watchEdges(layer, slopes, weights, slots_[index(facet)]);
             sand_.setBare(index(facet), false);
         }
         // A facet that was added with an edge may slide too. Under an obstacle, no sand may have flowed around it
         // before.
     } while (known < sand_.facetCount());
-    const SweepResult result = sand_.move(held_ != nullptr, momentum);
+    const SweepResult result = sand_.move(held_ != nullptr);
     swept_ = true;
     outflow_ += result.outflow;
-    if (result.spread || (band_ && result.met)) {
+    if (result.met) {
         met_.clear();
         sand_.findUnwatched(met_);
         for (std::size_t i = 0; i < met_.size(); ++i) {
@@ -382,10 +381,16 @@ std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
             }
         }
     }
+    // The weights of an edge depend on all corners of its facets.
+    std::vector<std::uint8_t> known = kept.facets;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        for (const std::int32_t corner : sand_.facet(static_cast<std::int32_t>(i)).corner) {
+            known[i] = staleVertices[index(corner)] != 0 ? 0 : known[i];
+        }
+    }
     for (std::size_t i = 0; i < kept.edges.size(); ++i) {
         const Edge edge = sand_.edge(i);
-        const bool stale = (staleVertices[index(edge.from)] | staleVertices[index(edge.to)]) != 0;
-        kept.edges[i] = stale ? 0 : kept.facets[index(edge.leftFacet)] & kept.facets[index(edge.rightFacet)];
+        kept.edges[i] = known[index(edge.leftFacet)] & known[index(edge.rightFacet)];
     }
     keep(kept);
     return corners;

@@ -46,7 +46,7 @@ public:
     /// Call it right after begin().
     void wake(const VertexSand& layer, const Slopes& slopes, std::span<const Vertex> vertices);
     /// Runs one sweep, and then watches all triangles that it may have set in motion. `momentum` is the share of the
-    /// last sweep's fluxes that continues, 0 to 1. Returns whether a volume changed.
+    /// last sweep's sliding that continues, 0 to 1. Returns whether a volume changed.
     bool sweep(const VertexSand& layer, const Slopes& slopes, Weights& weights, double momentum);
     /// Returns the volume that has fallen over an open rim since the last call [volume unit].
     [[nodiscard]] std::int64_t takeOutflow() { return std::exchange(outflow_, 0); }

@@ -83,6 +83,8 @@ std::int32_t ActiveMesh::addFacet(const Facet& facet) {
     squaredAcross_.push_back(facet.second);
     start_.push_back(facet.start);
     sliding_.push_back(0);
+    slid_.push_back(0);
+    goesOn_.push_back(0);
     bare_.push_back(~std::uint64_t{0});
     note(heldFacets_, index(number),
          std::any_of(facet.corner.begin(), facet.corner.end(), [this](std::int32_t corner) { return isHeld(corner); }));
@@ -132,7 +134,7 @@ void ActiveMesh::restart() {
     largestStar_ = greatestHeight_ = 0;
     isWide_ = alwaysWide_;
     heldKnown_ = false;
-    std::fill(fluxes_.begin(), fluxes_.end(), 0.0);
+    std::fill(goesOn_.begin(), goesOn_.end(), 0.0);
 }
 
 void ActiveMesh::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside, bool moving) {
@@ -162,9 +164,12 @@ void ActiveMesh::findUnwatched(std::vector<std::int32_t>& found) const {
     }
 }
 
-std::span<const std::int32_t> ActiveMesh::slide(bool held, bool band, std::size_t first) {
+std::span<const std::int32_t> ActiveMesh::slide(bool held, bool band, double momentum, std::size_t first) {
     if (held && !heldKnown_) {
         findHeld();
+    }
+    if (first == 0) {
+        std::swap(slid_, goesOn_);
     }
     first -= first % kHeldTogether;
     slidBare_.resize(facetCount());
@@ -180,7 +185,10 @@ std::span<const std::int32_t> ActiveMesh::slide(bool held, bool band, std::size_
                             .squaredAcross = squaredAcross_.data() + first,
                             .start = band ? start_.data() + first : nullptr,
                             .bare = bare_.data() + first,
+                            .momentum = momentum,
+                            .slid = slid_.data() + first,
                             .sliding = sliding_.data() + first,
+                            .goesOn = goesOn_.data() + first,
                             .slidBare = slidBare_.data()};
     const std::size_t count = path_ != base::CodePath::baseline ? v3::slideFacets(sweep) : baseline::slideFacets(sweep);
     for (std::size_t i = 0; i < count; ++i) {
@@ -189,7 +197,7 @@ std::span<const std::int32_t> ActiveMesh::slide(bool held, bool band, std::size_
     return {slidBare_.data(), count};
 }
 
-SweepResult ActiveMesh::move(bool held, double momentum) {
+SweepResult ActiveMesh::move(bool held) {
     inflow_.resize(2 * vertexCount());
     const SweepEdges sweep{.edges = edgeCount(),
                            .levels = levels_.data(),
@@ -202,7 +210,6 @@ SweepResult ActiveMesh::move(bool held, double momentum) {
                            .right = right_.data(),
                            .leftWeights = leftWeights_.data(),
                            .rightWeights = rightWeights_.data(),
-                           .momentum = momentum,
                            .fluxes = fluxes_.data()};
     path_ != base::CodePath::baseline ? v3::flowOverEdges(sweep) : baseline::flowOverEdges(sweep);
     if (isWide_) {
@@ -244,7 +251,6 @@ SweepResult ActiveMesh::moveWide() {
     }
     for (std::size_t i = 0; i < vertexCount(); ++i) {
         result.moved = result.moved || wideInflow_[i] != 0;
-        result.spread = result.spread || (wideInflow_[i] != 0 && !isWatched(i));
         result.met = result.met || (flowed(i) && !isWatched(i));
         result.resting += flowed(i) ? 0 : 1;
         wide_[i] += wideInflow_[i];
@@ -268,7 +274,7 @@ ActiveMesh::Marks ActiveMesh::whatMayFlow() const {
         slides[i] = sliding_[i] > 0 ? marks.facets[i] : 0;
     }
     for (std::size_t i = 0; i < marks.edges.size(); ++i) {
-        marks.edges[i] = fluxes_[i] != 0 || (slides[index(left_[i])] | slides[index(right_[i])]) != 0 ? 1 : 0;
+        marks.edges[i] = slides[index(left_[i])] | slides[index(right_[i])];
     }
     return marks;
 }
@@ -294,10 +300,13 @@ ActiveMesh::Renumbering ActiveMesh::keep(const Marks& kept) {
             now.vertices[index(first_[i])] = now.vertices[index(second_[i])] = now.vertices[index(third_[i])] = 0;
         }
     }
-    // The next sweep computes sliding_ again, but fluxes_ may carry momentum into it.
-    keepMarked(numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_, fluxes_);
-    keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_, bare_);
+    // The next sweep computes all but goesOn_ again.
+    keepMarked(numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_);
+    keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_, bare_,
+               goesOn_);
     sliding_.resize(first_.size());
+    slid_.resize(first_.size());
+    fluxes_.resize(from_.size());
     keepMarked(numberMarked(now.vertices), volumes_, stars_, levels_, undersides_, unwatched_, wide_);
     const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by) {
         std::transform(names.begin(), names.end(), names.begin(), [&by](std::int32_t name) { return by[index(name)]; });

@@ -44,7 +44,8 @@ public:
     [[nodiscard]] Facet facet(std::int32_t number) const;  // corners only
     [[nodiscard]] Edge edge(std::size_t number) const;     // ends and facets only
 
-    /// Sets all fluxes to 0, so that no momentum continues. Call place() for each vertex before the next sweep.
+    /// Forgets how strongly facets slid, so that no momentum continues. Call place() for each vertex before the next
+    /// sweep.
     void restart();
     void place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside, bool moving = false);
     /// Sets whether all facets around a vertex are here. A new vertex is not watched.
@@ -56,14 +57,14 @@ public:
 
     /// Does the first half of a sweep: computes how strongly facets slide, from facet `first` on. The facets before it
     /// must be known. `held`: whether undersides limit the sand. `band`: whether a facet at rest needs a steeper slope
-    /// to start than a sliding one needs to continue.
+    /// to start than a sliding one needs to continue. `momentum`: the share of how strongly a facet slid that
+    /// continues, 0 to 1. Call it once with `first` 0 before each move().
     ///
     /// Returns the facets that slide but lack edges, over which sand may flow in move(). The span is valid until the
     /// next call.
-    [[nodiscard]] std::span<const std::int32_t> slide(bool held, bool band, std::size_t first = 0);
-    /// Does the second half of a sweep: computes the fluxes over the edges and moves the sand. `momentum` is the share
-    /// of the last sweep's fluxes that continues, 0 to 1.
-    SweepResult move(bool held, double momentum);
+    [[nodiscard]] std::span<const std::int32_t> slide(bool held, bool band, double momentum, std::size_t first = 0);
+    /// Does the second half of a sweep: computes the fluxes over the edges and moves the sand.
+    SweepResult move(bool held);
     /// Returns whether sand flowed at one of the vertex's edges in the last sweep.
     [[nodiscard]] bool flowed(std::size_t vertex) const { return levels_[vertex].flow > 0; }
     /// Returns the number of vertices at which no sand flowed in the last sweep.
@@ -72,8 +73,8 @@ public:
     struct Marks {
         std::vector<std::uint8_t> facets, edges;
     };
-    /// Marks the facets at which sand flowed, because they may slide or brake in the next sweep. Marks the edges over
-    /// which sand flowed, and the edges of facets that slid.
+    /// Marks the facets at which sand flowed, because they may slide in the next sweep. Marks the edges of those
+    /// that slid.
     [[nodiscard]] Marks whatMayFlow() const;
     /// Adds the unwatched vertices at which sand flowed to `found`.
     void findUnwatched(std::vector<std::int32_t>& found) const;
@@ -106,7 +107,7 @@ private:
     std::vector<std::int32_t> rim_;  // vertices that spill
     std::vector<std::int64_t> wide_, wideInflow_;
     std::vector<std::int32_t> first_, second_, third_;  // by facet
-    std::vector<double> squared_, mixed_, squaredAcross_, start_, sliding_;
+    std::vector<double> squared_, mixed_, squaredAcross_, start_, sliding_, slid_, goesOn_;
     std::vector<std::uint64_t> bare_;
     std::vector<std::int32_t> slidBare_;                  // result of slide()
     std::vector<std::int32_t> from_, to_, left_, right_;  // by edge

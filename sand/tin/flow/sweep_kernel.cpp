@@ -88,14 +88,19 @@ template <bool kHeld, bool kBand, class Number, class Mask>
     const Number d1 = atB - atA, d2 = atC - atA;
     const Number steepness = squared * d1 * d1 + (mixed * d1 + across * d2) * d2;
     const Number push = kPush - 2 * kPush / (steepness + 1);
-    const Number none{};
+    const Number none{}, flowed = aFlow + bFlow + cFlow;
     Number rest = none + kRest;
     if constexpr (kBand) {
-        rest = aFlow + bFlow + cFlow > none ? rest : valuesFrom<Number>(s.start + i);
+        rest = flowed > none ? rest : valuesFrom<Number>(s.start + i);
     }
-    const Number brake = push < none ? push : none;
-    const Number sliding = steepness > rest ? push : brake;
+    // A facet that is flatter than the talus brakes. One at which no sand flows may be forgotten, and must not
+    // remember.
+    const Number before = flowed > none ? s.momentum * valuesFrom<Number>(s.slid + i) : none;
+    const Number now = before + (steepness > rest || push < none ? push : none);
+    const Number most = none + kMostOfBound, cut = now < most ? now : most;
+    const Number sliding = cut > none ? cut : none, goesOn = flowed > none ? sliding : none;
     std::memcpy(s.sliding + i, &sliding, sizeof(Number));
+    std::memcpy(s.goesOn + i, &goesOn, sizeof(Number));
     Mask bare;
     std::memcpy(&bare, s.bare + i, sizeof(Mask));
     return isAny(steepness > rest ? bare : Mask{});
@@ -122,50 +127,21 @@ std::int32_t* slideAll(const SweepFacets& sweep, std::size_t begin, std::size_t 
     return found;
 }
 
-/// Weights of an edge's two triangles, and how strongly each slides or brakes.
-struct Beside {
-    double left, right, leftSlides, rightSlides;
-
-    /// Returns the largest flow per height that the proofs allow.
-    [[nodiscard]] double bound() const { return std::max(left, 0.0) + std::max(right, 0.0); }
-    [[nodiscard]] double push() const {
-        return std::max(left * std::max(leftSlides, 0.0) + right * std::max(rightSlides, 0.0), 0.0);
-    }
-    [[nodiscard]] double brake() const {
-        return std::max(left, 0.0) * std::min(leftSlides, 0.0) + std::max(right, 0.0) * std::min(rightSlides, 0.0);
-    }
-};
-
-/// Returns the flux over an edge with momentum. A part of the last sweep's flux continues, unless the slope has
-/// turned. Triangles flatter than the talus brake that part. They never brake the push of the triangle beside them,
-/// because sand would then creep along kinks without end.
-double withMomentum(const Beside& beside, double difference, double goesOn) {
-    const double most = kMostOfBound * beside.bound() * difference;
-    const double forth = std::max(most, 0.0), back = std::min(most, 0.0);
-    const double kept = std::min(std::max(goesOn, back), forth) + beside.brake() * difference;
-    const double left = difference > 0 ? std::max(kept, 0.0) : std::min(kept, 0.0);
-    return std::min(std::max(left + beside.push() * difference, back), forth);
-}
-
-template <bool kHeld, bool kMomentum>
+template <bool kHeld>
 void flow(std::size_t count, const Level* __restrict levels, const double* __restrict undersides,
           const std::int32_t* __restrict from, const std::int32_t* __restrict to, const std::int32_t* __restrict left,
           const std::int32_t* __restrict right, const double* __restrict leftWeights,
-          const double* __restrict rightWeights, const double* __restrict sliding, double momentum,
-          double* __restrict fluxes) {
+          const double* __restrict rightWeights, const double* __restrict sliding, double* __restrict fluxes) {
     for (std::size_t i = 0; i < count; ++i) {
-        const Beside beside{leftWeights[i], rightWeights[i], sliding[left[i]], sliding[right[i]]};
+        const double ofLeft = leftWeights[i], ofRight = rightWeights[i];
         const double one = levels[from[i]].height, other = levels[to[i]].height;
-        double flux = 0;
-        if constexpr (kMomentum) {
-            flux = std::trunc(withMomentum(beside, one - other, momentum * fluxes[i]));
-        } else {
-            flux = std::trunc(beside.push() * (one - other));
-        }
+        const double push = std::max(ofLeft * sliding[left[i]] + ofRight * sliding[right[i]], 0.0);
+        double flux = std::trunc(push * (one - other));
         if constexpr (kHeld) {
             const double overOne = undersides[from[i]], overOther = undersides[to[i]];
             const double above = (one > other ? overOther : overOne) - (one > other ? other : one);
-            const double room = std::trunc(beside.bound() * std::max(above, 0.0));
+            const double bound = std::max(ofLeft, 0.0) + std::max(ofRight, 0.0);  // that the proofs allow, per height
+            const double room = std::trunc(bound * std::max(above, 0.0));
             flux = std::max(std::min(flux, room), -room);
         }
         fluxes[i] = flux;
@@ -174,9 +150,8 @@ void flow(std::size_t count, const Level* __restrict levels, const double* __res
 
 template <bool kHeld>
 void flowAll(const SweepEdges& s, std::size_t begin, std::size_t end) {
-    const auto run = s.momentum > 0 ? flow<kHeld, true> : flow<kHeld, false>;
-    run(end - begin, s.levels, s.undersides, s.from + begin, s.to + begin, s.left + begin, s.right + begin,
-        s.leftWeights + begin, s.rightWeights + begin, s.sliding, s.momentum, s.fluxes + begin);
+    flow<kHeld>(end - begin, s.levels, s.undersides, s.from + begin, s.to + begin, s.left + begin, s.right + begin,
+                s.leftWeights + begin, s.rightWeights + begin, s.sliding, s.fluxes + begin);
 }
 
 /// Calls work(held, begin, end) for the groups below an obstacle and for the groups without one, in as few parts as
@@ -234,20 +209,18 @@ std::int64_t spill(std::size_t count, const std::int32_t* rim, const double* vol
 /// Adds the sums to the volumes, and computes the heights. A height is a quotient that is rounded once.
 SweepResult settleUp(std::size_t count, const double* __restrict sums, const double* __restrict stars,
                      const std::uint64_t* __restrict unwatched, double* __restrict volumes, Level* __restrict levels) {
-    std::uint64_t moved = 0, beyond = 0, met = 0;
+    std::uint64_t moved = 0, met = 0;
     std::int64_t resting = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double inflow = sums[2 * i], flow = sums[2 * i + 1];
         // The library of emscripten has no std::bit_cast.
-        const auto bits = __builtin_bit_cast(std::uint64_t, inflow + 0.0);  // minus zero counts as 0
-        moved |= bits;
-        beyond |= bits & unwatched[i];
+        moved |= __builtin_bit_cast(std::uint64_t, inflow + 0.0);  // minus zero counts as 0
         met |= __builtin_bit_cast(std::uint64_t, flow) & unwatched[i];
         resting += flow > 0 ? 0 : 1;
         volumes[i] += inflow;
         levels[i] = {volumes[i] / stars[i], flow};
     }
-    return {moved != 0, beyond != 0, met != 0, resting, 0};
+    return {moved != 0, met != 0, resting, 0};
 }
 
 }  // namespace

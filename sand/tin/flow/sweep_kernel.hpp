@@ -14,7 +14,7 @@ namespace sand::tin {
 // curvature is at most 2. Σ k ≤ star allows a step of 1, and the curvature of m c is at most 1.25 kPush. With 1 −
 // g²/m² and 0.9, the curvature is 1.8, and sand swings.
 inline constexpr double kPush = 0.8;
-// Largest share of the bound that flows with momentum. Nearer to the bound, a chequerboard of heights swings without
+// Largest c of a triangle, with momentum. Nearer to the bound, a chequerboard of heights swings without
 // damping. On a grid, the share is 0.46 of 0.5.
 inline constexpr double kMostOfBound = 0.92;
 // Steepness at which sand rests: its slope then exceeds g by less than a part in 1024. Without this margin sand would
@@ -41,7 +41,10 @@ struct SweepFacets {
     const double *squared, *mixed, *squaredAcross;  // by facet: first, mixed and second of Facet
     const double* start;  // by facet: steepness at which it starts to slide if no sand flows there; null: always kRest
     const std::uint64_t* bare;  // by facet: all bits set if it lacks edges, else 0
-    double* sliding;            // by facet, written: how strongly it slides, up to kPush, or brakes, down to -kPush
+    double momentum;            // share of `slid` that continues, 0 to 1
+    const double* slid;         // by facet: `goesOn` of the last sweep
+    double* sliding;            // by facet, written: how strongly it slides, 0 to kMostOfBound
+    double* goesOn;             // by facet, written: the same, and 0 if no sand flowed there in the last sweep
     std::int32_t* slidBare;     // written: facets that slide and lack edges, in order
 };
 
@@ -55,8 +58,7 @@ struct SweepEdges {
     const double* sliding;                         // by facet
     const std::int32_t *from, *to, *left, *right;  // by edge: ends and facets
     const double *leftWeights, *rightWeights;      // by edge [probe unit²]
-    double momentum;                               // share of the last sweep's flux that continues, 0 to 1
-    double* fluxes;  // by edge, read and written: flux from `from` to `to`, a whole number [volume unit]
+    double* fluxes;  // by edge, written: flux from `from` to `to`, a whole number [volume unit]
 };
 
 /// Arguments of moveSand(), which applies the fluxes to volumes and heights. Volumes and all their sums are whole
@@ -96,7 +98,6 @@ inline void lean(std::array<double, 3>& heights, const std::array<double, 3>& un
 /// Result of moveSand().
 struct SweepResult {
     bool moved = false;        // a volume changed
-    bool spread = false;       // the volume of an unwatched vertex changed
     bool met = false;          // sand flowed at an unwatched vertex
     std::int64_t resting = 0;  // number of vertices at which no sand flowed
     std::int64_t outflow = 0;  // volume that fell over an open rim [volume unit]

@@ -122,9 +122,11 @@ Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, T
               .to = std::max(c.begin, c.end),
               .leftFacet = side.triangle,
               .rightFacet = side.triangle};
-    const double step = std::min(this->step(mesh, stars, edge.from), this->step(mesh, stars, edge.to));
     const auto weight = [&](TriangleSide one) {
-        return static_cast<double>(halvesOf(mesh, one.triangle)[static_cast<std::size_t>(one.corner)]) * step;
+        const auto& corner = triangleOf(mesh, one.triangle).corner;
+        const auto stepAt = [&](std::size_t k) { return step(mesh, stars, corner[k]); };
+        return static_cast<double>(halvesOf(mesh, one.triangle)[static_cast<std::size_t>(one.corner)]) *
+               std::min({stepAt(0), stepAt(1), stepAt(2)});
     };
     edge.left = weight(side);
     if (across.triangle != kNoNumber) {

@@ -66,9 +66,10 @@ struct TriangleSide {
 
 /// Weights of a mesh's edges. They prevent overshooting, and they do not depend on how the mesh is stored.
 ///
-/// An edge's weight has two parts, w · min(step_from, step_to). Here w is half the cotangent of the opposite angle.
-/// step_i is .9996 star_i / Σ_j w⁺_ij over the edges of vertex i, where w⁺ is the sum of an edge's positive parts. The
-/// flow over an edge is therefore at most k_ij per height. At both ends, Σ_j k_ij ≤ step_i Σ_j w⁺_ij = .9996 star_i.
+/// An edge's weight has two parts, one of each of its triangles: w times the smallest step of the triangle's corners.
+/// Here w is half the cotangent of the opposite angle. step_i is .9996 star_i / Σ_j w⁺_ij over the edges of vertex i,
+/// where w⁺ is the sum of an edge's positive parts. The flow over an edge is therefore at most k_ij per height. At both
+/// ends, Σ_j k_ij ≤ step_i Σ_j w⁺_ij = .9996 star_i.
 ///
 /// If the largest w of a triangle exceeds kMostWeight, all three are reduced by one factor, so that its sand still
 /// runs down its slope. When each was cut by itself, slivers as steep as three taluses took sand from their neighbours
@@ -82,7 +83,7 @@ public:
     /// Forgets steps and weights where the mesh has changed.
     void forget(const Mesh::Change& change);
     /// Returns the edge of a side on ground and of `across`, the same edge in the triangle beyond. The first call
-    /// visits all triangles around both ends.
+    /// visits all triangles around the corners of both.
     [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, TriangleSide side,
                             TriangleSide across);
 

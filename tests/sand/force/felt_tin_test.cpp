@@ -67,14 +67,14 @@ struct Agreement {
 // A ring far outside the outline contains the same sand on both. Control points of an upright tool are in the side of
 // its cut. This side is a slope as wide as the distance of cells or points. A height there depends on the exact
 // position. A sphere has no such cut.
-constexpr std::array kAgreements{Agreement{sand::ForceLaw::repulse, "sphere", 16.59, 16.50, 16.45},
-                                 Agreement{sand::ForceLaw::repulse, "circle", 20.23, 20.01, 19.01},
-                                 Agreement{sand::ForceLaw::repulse, "ellipse", 16.16, 16.59, 17.07},
+constexpr std::array kAgreements{Agreement{sand::ForceLaw::repulse, "sphere", 16.59, 16.50, 16.44},
+                                 Agreement{sand::ForceLaw::repulse, "circle", 20.23, 20.00, 19.03},
+                                 Agreement{sand::ForceLaw::repulse, "ellipse", 16.16, 16.59, 17.04},
                                  Agreement{sand::ForceLaw::repulse, "footprint", 15.53, 15.74, 15.99},
                                  Agreement{sand::ForceLaw::controlPoints, "sphere", 0.40, 0.41, 0.39},
-                                 Agreement{sand::ForceLaw::controlPoints, "circle", 0.28, 0.36, 0.37},
-                                 Agreement{sand::ForceLaw::controlPoints, "ellipse", 0.28, 0.37, 0.29},
-                                 Agreement{sand::ForceLaw::controlPoints, "footprint", 0.18, 0.16, 0.14}};
+                                 Agreement{sand::ForceLaw::controlPoints, "circle", 0.28, 0.36, 0.38},
+                                 Agreement{sand::ForceLaw::controlPoints, "ellipse", 0.28, 0.37, 0.30},
+                                 Agreement{sand::ForceLaw::controlPoints, "footprint", 0.18, 0.16, 0.15}};
 
 // The sand is the same everywhere. A figure of the table is exact to half of its last digit, plus a tenth of that digit
 // for the number that was rounded.

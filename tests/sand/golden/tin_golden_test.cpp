@@ -95,10 +95,10 @@ TEST(TinGolden, SessionHashesAreTheSameEverywhere) {
         const auto session = [anew](std::int32_t threshold, std::int32_t startThreshold, sand::Rim rim) {
             return fmt::format("{:016x}", hashOfSession(threshold, startThreshold, rim, anew));
         };
-        EXPECT_EQ(session(65536, 65536, sand::Rim::closed), "89dd7b678b067772") << anew;
-        EXPECT_EQ(session(40000, 50000, sand::Rim::closed), "bffd41e91462bc83") << anew;
-        EXPECT_EQ(session(65536, 65536, sand::Rim::open), "73c85089e5de3ded") << anew;
-        EXPECT_EQ(session(40000, 50000, sand::Rim::open), "8cb9e2a826e21a4b") << anew;
+        EXPECT_EQ(session(65536, 65536, sand::Rim::closed), "1882fd7900521acb") << anew;
+        EXPECT_EQ(session(40000, 50000, sand::Rim::closed), "a5afae9a9d28043e") << anew;
+        EXPECT_EQ(session(65536, 65536, sand::Rim::open), "cae5af1f1391d51f") << anew;
+        EXPECT_EQ(session(40000, 50000, sand::Rim::open), "320f1223aa07e5f3") << anew;
     }
 }
 

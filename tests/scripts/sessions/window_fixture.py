@@ -90,11 +90,15 @@ class WindowOfTry(pointer_fixture.WindowTest):
         x, y, width, height = self.place()
         self.desktop.do("mousemove", 1, 1)
         self.gone()
-        picture, shown, differing = None, None, [None]
+        picture, shown, differing = None, None, "the sand moves"
 
         def is_whole():
             nonlocal picture, shown, differing
+            before = self.session.status()["state_hash"]
             self.session.frames_pass()
+            now = self.session.status()
+            if now["state_hash"] != before or now["sweeps_owed"]:
+                return False
             captured = self.session.ask("capture")
             picture = picture_files.read_png(self.session.out / captured["folder"] / "wall.png")
             self.assertEqual((picture.width, picture.height), (width, height), "the size of a capture")
