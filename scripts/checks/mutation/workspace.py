@@ -84,7 +84,7 @@ class Workspace:
         """Copies the sources and configures the build. Ends what a run that was killed has left."""
         self.end_processes()
         self.copy_sources()
-        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"] if shutil.which("ccache") else []
+        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         subprocess.run(["cmake", "--preset", "release", "-S", self.folder, "-B", self.build_folder, "-DSANDWALL_MUTANTS=ON",
                         *launcher],
                        cwd=self.folder, check=True, stdout=subprocess.DEVNULL, env=self.environment())
