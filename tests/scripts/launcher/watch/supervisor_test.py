@@ -52,6 +52,10 @@ def environments():
 
 
 class Stopping(Supervised):
+    def setUp(self):
+        super().setUp()
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup may have started the tests
+
     def test_a_session_that_fails_while_it_is_stopped_is_not_started_again(self):
         self.tries("progress 1 1; read -r line; dies 1 host 9")
         process = self.begin(["-"])
