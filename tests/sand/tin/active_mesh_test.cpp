@@ -88,6 +88,29 @@ TEST(ActiveMesh, DoublesAndIntegersAndEveryCodePathMoveTheSameSand) {
     }
 }
 
+// c of a triangle is 0.8 (m² - g²)/(m² + g²). At three taluses that is 0.64, of which 0.9 continue. At half a talus it
+// is -0.48, so that 0.096 are left.
+TEST(ActiveMesh, ATriangleThatIsFlatterThanTheTalusBrakesItsSlide) {
+    constexpr std::int64_t talus = 1'000'000;
+    const auto afterSliding = [](bool moving) {
+        ActiveMesh sand;
+        for (const std::int64_t volume : {3 * talus, std::int64_t{0}, std::int64_t{0}}) {
+            sand.addVertex(volume, 1, ActiveMesh::kFree, false, true);
+        }
+        sand.setBare(static_cast<std::size_t>(sand.addFacet({.corner = {0, 1, 2}, .first = 1.0 / (talus * talus)})),
+                     false);
+        sand.addEdge({.from = 0, .to = 1, .leftFacet = 0, .rightFacet = 0, .left = 0.1});
+        static_cast<void>(sweep(sand, false, false, 0.9));
+        EXPECT_EQ(sand.volume(1), 192'000) << "0.1 of 0.64 of three taluses";
+        sand.place(0, talus / 2, 1, ActiveMesh::kFree, moving);
+        sand.place(1, 0, 1, ActiveMesh::kFree, moving);
+        static_cast<void>(sweep(sand, false, false, 0.9));
+        return sand.volume(1);
+    };
+    EXPECT_NEAR(static_cast<double>(afterSliding(true)), 0.1 * 0.096 * talus / 2, 1);
+    EXPECT_EQ(afterSliding(false), 0) << "no sand flowed there, so that nothing continues";
+}
+
 /// Returns the fall of V²/star from the volumes `before` to the volumes `after`. It is one sum of exact products over
 /// the vertices, because the difference of two sums would be lost in their rounding.
 long double fallOf(const VertexSand& layer, const std::vector<std::int64_t>& before,
