@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "sand/model/tool.hpp"
+
 namespace {
 
 using base::Keystroke;
@@ -84,7 +86,7 @@ TEST(KeyList, NamesKeysAsKeyboardsDo) {
     EXPECT_EQ(keyName(press('z', Keystroke::kControl)), "Ctrl+Z");
     EXPECT_EQ(keyName(press('r', Keystroke::kShift)), "Shift+R");
     EXPECT_EQ(keyName({Keystroke::kF12, 0, 0}), "F12");
-    EXPECT_EQ(keyNames(findKey(press('6'))->entry), "1 – 6");
+    EXPECT_EQ(keyNames(findKey(press('6'))->entry), fmt::format("1 – {}", sand::kToolKinds));
     EXPECT_EQ(findKey(press('6'))->index, 5U);
     EXPECT_EQ(keyNames(findKey(press('h'))->entry), "F1 ? H");
     EXPECT_EQ(keyNames(findKey(press('-'))->entry), "- PgDn");

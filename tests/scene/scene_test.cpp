@@ -132,8 +132,8 @@ TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
     EXPECT_NE(plain.rules.digest(), scene.rules.digest()) << "server and master must have the same tool";
     EXPECT_EQ(scene.encode().size(), plain.encode().size()) << "every tool has all of its members";
     const auto tool = [&](const std::string& keys) { return complaint(kFlat + "[tool]\n" + keys); };
-    EXPECT_EQ(tool("shape = \"cube\"\n"),
-              "s.toml:5: shape must be one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, got 'cube'");
+    EXPECT_EQ(tool("shape = \"cube\"\n"), fmt::format("s.toml:5: shape must be one of {}, got 'cube'",
+                                                      fmt::join(base::namesOf<sand::ToolKind>(), ", ")));
     EXPECT_EQ(tool("shape = \"ellipse\"\nwidth = 2\n"), "s.toml:6: width must be within [0.05, 1], got 2");
     EXPECT_EQ(tool("width = 0.5\n"), "s.toml:5: a sphere is as wide as it is long; leave width out");
     EXPECT_EQ(tool("heading_deg = nan\n"), "s.toml:5: heading_deg must be a finite number");

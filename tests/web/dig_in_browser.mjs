@@ -60,7 +60,7 @@ try {
     assert.equal((await data()).problem, undefined);
     assert.equal(await page.$eval("#undo", (button) => button.disabled), true, "there is no stroke yet");
     const tools = await page.$$eval("#tool option", (options) => options.map(({ value }) => value));
-    assert.ok(tools.length >= 6 && tools.at(-1) === "footprint", tools.join());
+    assert.ok(tools.length >= 6 && tools.includes("footprint"), tools.join());
     for (const [i, tool] of tools.entries()) {
         await page.select("#tool", tool);
         await page.click("#larger");

@@ -194,10 +194,11 @@ TEST(Protocol, AnEditTakesItsDetailsAlong) {
     }
 }
 
-// A watcher that does not know an edit cannot read its step. A new edit therefore raises the version, and its writer
-// puts both numbers here.
-TEST(Protocol, HasTheEditsOfItsVersion) {
+// A watcher that does not know an edit or a tool cannot read its step. A new one therefore raises the version, and its
+// writer puts both numbers here.
+TEST(Protocol, HasTheEditsAndToolsOfItsVersion) {
     EXPECT_EQ(sand::kEdits, 6);
+    EXPECT_EQ(sand::kToolKinds, 6);
     EXPECT_GE(kProtocolVersion, 10U) << "the first with so many";
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -113,8 +114,8 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
         EXPECT_NE(complaint("tool " + number).find("left or right, got '" + number + "'"), std::string::npos);
     }
     EXPECT_EQ(complaint("tool 1e999"),
-              "a tool is one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, or has radius=, width=, "
-              "heading=, foot=left or right, got '1e999'");
+              fmt::format("a tool is one of {}, or has radius=, width=, heading=, foot=left or right, got '1e999'",
+                          fmt::join(base::namesOf<sand::ToolKind>(), ", ")));
     EXPECT_NE(complaint("tool footprint foot=both").find("got 'foot=both'"), std::string::npos);
     for (const std::string value : {"scale 1.5", "scale +1", "scale -1", "scale", "scale nan", "half"}) {
         EXPECT_EQ(complaint("force " + value),

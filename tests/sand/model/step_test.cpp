@@ -52,10 +52,11 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
     EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError);
 }
 
-// A release that does not know an edit cannot play its journal. A new edit therefore raises the version, and its writer
-// puts both numbers here.
-TEST(Step, HasTheEditsOfThisVersionOfTheAlgorithm) {
+// A release that does not know an edit or a tool cannot play its journal. A new one therefore raises the version, and
+// its writer puts both numbers here.
+TEST(Step, HasTheEditsAndToolsOfThisVersionOfTheAlgorithm) {
     EXPECT_EQ(sand::kEdits, 6);
+    EXPECT_EQ(sand::kToolKinds, 6);
     EXPECT_GE(sand::kAlgorithmVersion, 14U) << "the first with so many";
 }
 

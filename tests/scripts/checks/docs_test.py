@@ -78,6 +78,12 @@ class Documents(unittest.TestCase):
         self.assertEqual(said.groups(), (constant("journal/format.hpp", "kJournalVersion"),
                                          constant("sand/model/rules.hpp", "kAlgorithmVersion")))
 
+    def test_the_page_of_the_protocol_has_the_version_of_the_code(self):
+        version = constant("haptic_bridge/link/greetings.hpp", "kProtocolVersion")
+        page = (ROOT / "docs/protocol.md").read_text(encoding="utf-8")
+        self.assertEqual(re.findall(r"protocol version \((\d+)\)|`sandwall (\d+) (?:master|server)`", page),
+                         [(version, ""), ("", version), ("", version)])
+
     def test_a_link_to_nothing_is_named(self):
         good = "[a](other.md) [b](images/a.png) [c](other.md#the-law-how-it-holds) [d](https://no.where/x) [e](../sand) [f](#page)\n# Page\n"
         self.assertEqual(list(broken_links(self.made_up(good), "docs/page.md")), [])
