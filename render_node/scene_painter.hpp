@@ -45,6 +45,9 @@ public:
     ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom);
     /// Takes the sand from `scene`, which must have a height field.
     ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom);
+    ScenePainter(const ScenePainter&) = delete;  // its parts refer to each other
+    ScenePainter& operator=(const ScenePainter&) = delete;
+    ~ScenePainter() = default;
 
     /// Sets the transformation from the scene to the room for all further drawing.
     void setSceneToRoom(const glm::dmat4& sceneToRoom) { shown_.sceneToRoom = sceneToRoom; }
