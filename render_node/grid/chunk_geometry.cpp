@@ -5,8 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "render_node/grid/levels.hpp"
-
 namespace render_node {
 namespace {
 
@@ -28,18 +26,27 @@ GLintptr bytesOf(std::size_t vertices) { return static_cast<GLintptr>(vertices *
 }  // namespace
 
 ChunkGeometry::ChunkGeometry(const sand::CellRect& vertices, int level)
-    : vertices_(vertices), stale_(vertices), level_(level) {}
+    : vertices_(vertices), stale_(vertices), sent_{level, {level, level, level, level}} {}
 
 void ChunkGeometry::markStale(const sand::CellRect& vertices) {
     stale_ = stale_.joinedWith(vertices.clippedTo(vertices_));
 }
 
-void ChunkGeometry::refresh(const shapes::GridVertices& surface, const shapes::HoleEdges* holes) {
-    if (stale_.empty()) {
+bool ChunkGeometry::lacksVerticesOf(const ChunkLevels& levels) const {
+    bool lacks = false;
+    for (std::size_t edge = 0; edge < levels.edges.size(); ++edge) {
+        lacks |= levels.edges[edge] < sent_.edges[edge];
+    }
+    return lacks;
+}
+
+void ChunkGeometry::refresh(const shapes::GridVertices& surface, const ChunkLevels& levels,
+                            const shapes::HoleEdges* holes) {
+    if (stale_.empty() && !lacksVerticesOf(levels)) {
         return;
     }
-    if (level_ > 0 || bytes_ == 0 || holes != nullptr) {
-        sendAll(surface, holes);
+    if (levels.level > 0 || bytes_ == 0 || holes != nullptr) {
+        sendAll(surface, levels, holes);
     } else {
         glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
         std::vector<shapes::GridVertex> row(static_cast<std::size_t>(stale_.x1 - stale_.x0));
@@ -53,8 +60,10 @@ void ChunkGeometry::refresh(const shapes::GridVertices& surface, const shapes::H
     stale_ = {};
 }
 
-void ChunkGeometry::sendAll(const shapes::GridVertices& surface, const shapes::HoleEdges* holes) {
-    std::vector<shapes::GridVertex> vertices = verticesOf(surface, vertices_, level_);
+void ChunkGeometry::sendAll(const shapes::GridVertices& surface, const ChunkLevels& levels,
+                            const shapes::HoleEdges* holes) {
+    std::vector<shapes::GridVertex> vertices = verticesOf(surface, vertices_, levels);
+    sent_ = levels;
     if (holes != nullptr) {
         const std::vector<shapes::GridVertex> added = holes->added(vertices);
         vertices.insert(vertices.end(), added.begin(), added.end());

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "render_node/gl/gl_handle.hpp"
+#include "render_node/grid/levels.hpp"
 #include "shapes/grid/hole_edges.hpp"
 #include "shapes/grid/vertices.hpp"
 
@@ -18,19 +19,21 @@ public:
 
     /// Marks vertices whose look the sand has changed.
     void markStale(const sand::CellRect& vertices);
-    /// Computes the marked vertices and sends them to GL. `holes` belongs to a chunk with holes, at level 0.
-    void refresh(const shapes::GridVertices& surface, const shapes::HoleEdges* holes);
-    [[nodiscard]] int level() const { return level_; }
+    /// Computes the marked vertices, and those of edges that have become finer, and sends them to GL. The level of
+    /// `levels` is this level. `holes` belongs to a chunk with holes, at level 0.
+    void refresh(const shapes::GridVertices& surface, const ChunkLevels& levels, const shapes::HoleEdges* holes);
+    [[nodiscard]] int level() const { return sent_.level; }
     [[nodiscard]] GLuint array() const { return array_.id(); }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }  // memory in GL; 0 before the first refresh()
 
     std::uint64_t used = 0;  // number of the draw() that used it last; the owner sets it
 
 private:
-    void sendAll(const shapes::GridVertices& surface, const shapes::HoleEdges* holes);
+    [[nodiscard]] bool lacksVerticesOf(const ChunkLevels& levels) const;
+    void sendAll(const shapes::GridVertices& surface, const ChunkLevels& levels, const shapes::HoleEdges* holes);
 
     sand::CellRect vertices_, stale_;  // of the vertex grid
-    int level_;
+    ChunkLevels sent_;
     std::size_t bytes_ = 0;
     GlVertexArray array_;
     GlBuffer buffer_;

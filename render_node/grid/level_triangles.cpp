@@ -113,12 +113,12 @@ private:
 }  // namespace
 
 std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface, const sand::CellRect& vertices,
-                                           int level) {
-    if (level == 0) {
+                                           const ChunkLevels& levels) {
+    if (levels.level == 0) {
         return surface.verticesIn(vertices);
     }
     std::vector<shapes::GridVertex> out;
-    const int stride = 1 << level;
+    const int stride = 1 << levels.level;
     for (int row = vertices.y0; row < vertices.y1; row += stride) {
         for (int column = vertices.x0; column < vertices.x1; column += stride) {
             out.push_back(surface.vertex(column, row));
@@ -126,9 +126,15 @@ std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface, 
     }
     const glm::ivec2 quads(vertices.x1 - vertices.x0 - 1, vertices.y1 - vertices.y0 - 1);
     for (std::size_t edge = 0; edge < 4; ++edge) {
-        for (int along = 0; along <= lengthOf(quads, edge); ++along) {
-            const glm::ivec2 place = placeOf(quads, edge, along, 0);
-            out.push_back(surface.vertex(vertices.x0 + place.x, vertices.y0 + place.y));
+        const std::size_t first = out.size();
+        const int length = lengthOf(quads, edge), outerStride = 1 << levels.edges[edge];
+        out.resize(first + static_cast<std::size_t>(length) + 1);
+        for (int along = outerStride; along < length; along += outerStride) {
+            if (along % stride != 0) {  // the others are in the grid
+                const glm::ivec2 place = placeOf(quads, edge, along, 0);
+                out[first + static_cast<std::size_t>(along)] =
+                    surface.vertex(vertices.x0 + place.x, vertices.y0 + place.y);
+            }
         }
     }
     return out;

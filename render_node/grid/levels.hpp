@@ -26,15 +26,15 @@ struct ChunkLevels {
     friend auto operator<=>(const ChunkLevels&, const ChunkLevels&) = default;
 };
 
-/// Returns the vertices of a chunk of side × side quads at one level. The vertices of the level's grid come first, row
-/// by row from the south-west. Above level 0 all vertices of the four edges follow, counter-clockwise. They are needed
-/// beside a finer chunk or the rim.
+/// Returns the vertices of a chunk of side × side quads. The vertices of the level's grid come first, row by row from
+/// the south-west. Above level 0 the four edges follow, counter-clockwise. They have a place for every vertex, but only
+/// those that an edge finer than the chunk needs are computed. All others are 0.
 [[nodiscard]] std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface,
-                                                         const sand::CellRect& vertices, int level);
+                                                         const sand::CellRect& vertices, const ChunkLevels& levels);
 
-/// Returns the triangles of a chunk as indices into verticesOf(), counter-clockwise from above. Neighbours that agree
-/// on the level of their common edge use the same vertices there, so that there is no crack. Above level 0, 2^(level+1)
-/// must divide both sides.
+/// Returns the triangles of a chunk as indices into verticesOf(), counter-clockwise from above. They use the vertices
+/// of a chunk with these levels, or with finer edges. Neighbours that agree on the level of their common edge use the
+/// same vertices there, so that there is no crack. Above level 0, 2^(level+1) must divide both sides.
 [[nodiscard]] std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const ChunkLevels& levels);
 
 }  // namespace render_node

@@ -108,7 +108,7 @@ private:
                       std::vector<shapes::Box>& changed);
     [[nodiscard]] bool mayMatter(int x, int y, const LevelRule& rule) const;
     [[nodiscard]] ChunkLevels levelsOf(int x, int y, const LevelRule& rule);
-    [[nodiscard]] ChunkGeometry& geometryOf(Chunk& chunk, int level);
+    [[nodiscard]] ChunkGeometry& geometryOf(Chunk& chunk, const ChunkLevels& levels);
     [[nodiscard]] const Indices& indicesOf(const ChunkLevels& levels);
     [[nodiscard]] const Indices& indicesOf(Chunk& chunk, const ChunkLevels& levels);
     [[nodiscard]] Indices send(std::span<const std::uint16_t> indices, std::vector<shapes::TriangleBlock> blocks);

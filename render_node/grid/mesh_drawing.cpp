@@ -84,13 +84,13 @@ DrawnLevels GridMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRul
     return levels;
 }
 
-ChunkGeometry& GridMesh::geometryOf(Chunk& chunk, int level) {
-    auto found = std::ranges::find(chunk.geometries, level, &ChunkGeometry::level);
+ChunkGeometry& GridMesh::geometryOf(Chunk& chunk, const ChunkLevels& levels) {
+    auto found = std::ranges::find(chunk.geometries, levels.level, &ChunkGeometry::level);
     if (found == chunk.geometries.end()) {
-        found = chunk.geometries.emplace(found, chunk.vertices, level);
+        found = chunk.geometries.emplace(found, chunk.vertices, levels.level);
     }
     const std::size_t before = found->bytes();
-    found->refresh(surface_, chunk.holes ? &*chunk.holes : nullptr);
+    found->refresh(surface_, levels, chunk.holes ? &*chunk.holes : nullptr);
     bytes_ += found->bytes() - before;
     found->used = choice_;
     return *found;
@@ -145,7 +145,7 @@ GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
     visitSeen(sceneToClip, culling, [&](int x, int y) {
         const ChunkLevels levels = levelsOf(x, y, rule);
         const Indices& indices = indicesOf(chunk(x, y), levels);
-        const ChunkGeometry& geometry = geometryOf(chunk(x, y), levels.level);
+        const ChunkGeometry& geometry = geometryOf(chunk(x, y), levels);
         if (before) {
             before(boxOf(chunk(x, y).vertices, chunk(x, y).heights));
         }

@@ -84,7 +84,7 @@ TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
         for (int chunk = 0; chunk < kChunks * kChunks; ++chunk) {
             const int x = chunk % kChunks, y = chunk / kChunks;
             const ChunkLevels levels = patchwork.at(x, y);
-            const std::vector<GridVertex> own = render_node::verticesOf(surface, chunkAt(x, y), levels.level);
+            const std::vector<GridVertex> own = render_node::verticesOf(surface, chunkAt(x, y), levels);
             const std::vector<std::uint16_t> triangles = render_node::trianglesOf(kSide, kSide, levels);
             for (std::size_t i = 0; i < triangles.size(); ++i) {
                 const GridVertex& from = own.at(triangles[i]);
@@ -106,7 +106,7 @@ TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
 
 /// Returns the largest distance of a chunk's triangles from the vertices below or above them [cell].
 double distanceOf(const GridVertices& surface, const sand::CellRect& chunk, const ChunkLevels& levels) {
-    const std::vector<GridVertex> own = render_node::verticesOf(surface, chunk, levels.level);
+    const std::vector<GridVertex> own = render_node::verticesOf(surface, chunk, levels);
     const std::vector<std::uint16_t> triangles = render_node::trianglesOf(kSide, kSide, levels);
     double most = 0;
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
