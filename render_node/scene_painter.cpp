@@ -36,8 +36,9 @@ ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& s
       surface_(makeDrawnSurface(start, scene.terrain.cellSize(), sun_)),
       programs_(look_.flatShading),
       grain_(glm::vec2(sun_)),
-      box_(surface_->rim(), surface_->heightsEver().lowest, double{static_cast<float>(cellSize_)}, scene.rules.rim),
-      boxMesh_(box_) {
+      box_(std::make_unique<shapes::SandBox>(surface_->rim(), surface_->heightsEver().lowest,
+                                             double{static_cast<float>(cellSize_)}, scene.rules.rim)),
+      boxMesh_(*box_) {
     startCounting();
 }
 
@@ -53,7 +54,7 @@ void ScenePainter::update(const sand::SurfaceData& data, const sand::SurfaceChan
         sceneToClips.push_back(camera.roomToClip * shown_.sceneToRoom);
     }
     if (surface_->update(data, change, sceneToClips)) {
-        box_.update(surface_->rim());
+        box_->update(surface_->rim());
         boxMesh_.update();
     }
 }
@@ -228,7 +229,7 @@ PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& tar
     startCounting();
     const glm::ivec2 size(target.width(), target.height());
     PixelRect changed;
-    Redraw redraw(*surface_, box_, sun_);
+    Redraw redraw(*surface_, *box_, sun_);
     for (const PixelRect& rect : redraw.pixels(camera, shown_, size, ruleFor(camera, size), memory)) {
         drawWithin(rect, camera, target);
         changed = around(changed, rect);

@@ -45,9 +45,6 @@ public:
     ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom);
     /// Takes the sand from `scene`, which must have a height field.
     ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom);
-    ScenePainter(const ScenePainter&) = delete;  // its parts refer to each other
-    ScenePainter& operator=(const ScenePainter&) = delete;
-    ~ScenePainter() = default;
 
     /// Sets the transformation from the scene to the room for all further drawing.
     void setSceneToRoom(const glm::dmat4& sceneToRoom) { shown_.sceneToRoom = sceneToRoom; }
@@ -134,7 +131,7 @@ private:
     ScenePrograms programs_;
     std::optional<ForceArrowView> forceView_;  // made for the first arrow
     GrainTexture grain_;
-    shapes::SandBox box_;
+    std::unique_ptr<shapes::SandBox> box_;  // stays where it is for boxMesh_ when this object moves
     BoxMesh boxMesh_;
     ToolMesh toolMesh_;
 };

@@ -34,8 +34,6 @@ struct Options {
 
 /// A tile with the view and the eyes that its rank has.
 struct Tile {
-    Tile(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom)
-        : view(scene, start, sceneToRoom) {}
     render_node::ScenePainter view;
     struct Eye {
         render_node::Camera camera;
@@ -53,7 +51,7 @@ std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const scene:
                                                       scene.referenceHeight() * field.unit());
     std::vector<std::unique_ptr<Tile>> tiles;
     for (const walls::Tile& tile : wall.tiles) {
-        tiles.push_back(std::make_unique<Tile>(scene, start, sceneToRoom));
+        tiles.push_back(std::make_unique<Tile>(Tile{render_node::ScenePainter(scene, start, sceneToRoom), {}}));
         for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
             const walls::View seen = walls::viewOf(wall, tile, eye);
             tiles.back()->eyes.push_back(std::make_unique<Tile::Eye>(
