@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Measures the sand at rims, walls, rock faces and holes, and under tools that are held there: one row for each experiment,
-# with the largest value that is right. Fails if a value is larger, as it is in the rows "slope below a tool that touches it".
+# with the largest value that is right. Fails if a value is larger, as it is for a sphere in "slope below a tool that touches it".
 # scripts/test.sh does not run it. docs/sand.md
 #
 #   scripts/checks/borders.sh              Fields of 64 cells a side, less than a minute.

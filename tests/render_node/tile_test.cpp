@@ -170,6 +170,17 @@ TEST_F(TiledWall, DrawsOnlyTheChunksEachTileSees) {
     EXPECT_LT(fewestChunks_, chunksOfField_ / 4);
 }
 
+// The mesh of the box refers to the box. While the box was a member, a painter that had moved drew the box of the old
+// one.
+TEST_F(TiledWall, IsDrawnAlikeByAPainterThatHasMoved) {
+    const sample::Window all{0, 0, 1, 1};
+    const render_node::Camera camera = sample::camera(leftEye_, leftEye_ + forward_, all);
+    ScenePainter painter = makeView();
+    const Pixels before = sample::draw(painter, camera, wholeTarget_);
+    ScenePainter moved(std::move(painter));
+    EXPECT_TRUE(sample::draw(moved, camera, wholeTarget_) == before);
+}
+
 TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
     scene_ = sample::flatScene(300, 300, 0.03);
     sand::Replica replica(scene_);

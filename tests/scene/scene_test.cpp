@@ -263,7 +263,7 @@ TEST_F(SceneFile, WhatItsFilesMeanSurvivesItsEncoding) {
     EXPECT_EQ(scene::Scene::decode(before).statements, std::nullopt);
     EXPECT_EQ(scene::Scene::decode(before).encode(), before);
 
-    // The same scene may have been read by another path, or by an earlier build.
+    // Another path, or an earlier build, may have read the same scene.
     scene::Scene moved = scene;
     moved.statements->front().file = "elsewhere/t.asc";
     scene::Scene other = scene;

@@ -73,7 +73,7 @@ public:
     struct Marks {
         std::vector<std::uint8_t> facets, edges;
     };
-    /// Marks the facets at which sand flowed, because they may slide in the next sweep. Marks the edges of those
+    /// Marks the facets at which sand flowed, because they may slide in the next sweep. Marks the edges of the facets
     /// that slid.
     [[nodiscard]] Marks whatMayFlow() const;
     /// Adds the unwatched vertices at which sand flowed to `found`.

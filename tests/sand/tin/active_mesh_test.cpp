@@ -88,8 +88,8 @@ TEST(ActiveMesh, DoublesAndIntegersAndEveryCodePathMoveTheSameSand) {
     }
 }
 
-// c of a triangle is 0.8 (m² - g²)/(m² + g²). At three taluses that is 0.64, of which 0.9 continue. At half a talus it
-// is -0.48, so that 0.096 are left.
+// c of a triangle is 0.8 (m² - g²)/(m² + g²). At three taluses c is 0.64, and a share of 0.9 continues. At half a talus
+// the slope adds -0.48, and 0.096 is left.
 TEST(ActiveMesh, ATriangleThatIsFlatterThanTheTalusBrakesItsSlide) {
     constexpr std::int64_t talus = 1'000'000;
     const auto afterSliding = [](bool moving) {
@@ -108,7 +108,7 @@ TEST(ActiveMesh, ATriangleThatIsFlatterThanTheTalusBrakesItsSlide) {
         return sand.volume(1);
     };
     EXPECT_NEAR(static_cast<double>(afterSliding(true)), 0.1 * 0.096 * talus / 2, 1);
-    EXPECT_EQ(afterSliding(false), 0) << "no sand flowed there, so that nothing continues";
+    EXPECT_EQ(afterSliding(false), 0) << "a slide must not continue where sand has stopped";
 }
 
 /// Returns the fall of V²/star from the volumes `before` to the volumes `after`. It is one sum of exact products over

@@ -118,7 +118,7 @@ TEST_F(TinReplica, AStartAnswersForItsVerticesAndItsNominalCells) {
     EXPECT_EQ(size, (sand::FieldSize{64, 64, true}));
     EXPECT_NE(size, (sand::FieldSize{64, 64}));
     EXPECT_FALSE(size.bytesOfReplica().has_value()) << "the rules do not say how many vertices there are";
-    EXPECT_EQ(size.leastBytes(), 4 * 64 * 64) << "the heights of which the TIN is made";
+    EXPECT_EQ(size.leastBytes(), 4 * 64 * 64) << "the heights from which the TIN is made";
     EXPECT_THROW((void)start.data(), std::logic_error);
 }
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/grid/chunk_geometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "render_node/gl/gl_context.hpp"
+#include "scene/model/scene.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
+
+namespace {
+
+using render_node::ChunkGeometry;
+using render_node::ChunkLevels;
+using shapes::GridVertex;
+
+constexpr sand::CellRect kChunk{16, 16, 33, 33};  // 16 × 16 quads
+
+class SentChunk : public testing::Test {
+protected:
+    /// Returns whether GL has every vertex that triangles of these levels use.
+    [[nodiscard]] bool hasVerticesOf(const ChunkLevels& levels) const {
+        const std::vector<GridVertex> wanted = render_node::verticesOf(surface_, kChunk, levels);
+        std::vector<GridVertex> sent(wanted.size());
+        glBindVertexArray(geometry_.array());
+        GLint buffer = 0;
+        glGetVertexAttribiv(0, GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING, &buffer);
+        glBindBuffer(GL_ARRAY_BUFFER, static_cast<GLuint>(buffer));
+        glGetBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(geometry_.bytes()), sent.data());
+        EXPECT_EQ(geometry_.bytes(), sent.size() * sizeof(GridVertex));
+        const auto used = render_node::trianglesOf(16, 16, levels);
+        return std::ranges::all_of(
+            used, [&](std::uint16_t i) { return std::memcmp(&sent.at(i), &wanted.at(i), sizeof(GridVertex)) == 0; });
+    }
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
+    scene::Scene scene_ = sample::duneScene(64);
+    shapes::GridVertices surface_{scene_.terrain};
+    ChunkGeometry geometry_{kChunk, 2};
+};
+
+TEST_F(SentChunk, GetsTheVerticesOfAnEdgeThatBecomesFiner) {
+    const ChunkLevels alike{2, {2, 2, 2, 2}};
+    geometry_.refresh(surface_, alike, nullptr);
+    EXPECT_TRUE(hasVerticesOf(alike));
+    for (std::size_t edge = 0; edge < 4; ++edge) {
+        for (const int level : {1, 0}) {
+            ChunkLevels finer = alike;
+            finer.edges.at(edge) = level;
+            EXPECT_FALSE(hasVerticesOf(finer)) << "edge " << edge << ", level " << level;
+            geometry_.refresh(surface_, finer, nullptr);
+            EXPECT_TRUE(hasVerticesOf(finer)) << "edge " << edge << ", level " << level;
+        }
+    }
+}
+
+TEST_F(SentChunk, KeepsTheVerticesOfAnEdgeThatBecomesCoarser) {
+    geometry_.refresh(surface_, {2, {0, 1, 0, 2}}, nullptr);
+    for (const ChunkLevels& coarser : {ChunkLevels{2, {1, 1, 0, 2}}, ChunkLevels{2, {2, 2, 2, 2}}}) {
+        geometry_.refresh(surface_, coarser, nullptr);
+        EXPECT_TRUE(hasVerticesOf(coarser));
+    }
+}
+
+}  // namespace
