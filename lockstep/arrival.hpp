@@ -20,6 +20,7 @@ struct Arrival {
     std::int64_t lastSwap = 0;    // [ns], swap of the frame before; 0 in the first frame
     std::int64_t drawn = 0;       // [ns], duration of the drawing; 0 at the master
     std::uint64_t stateHash = 0;  // sand::Replica::stateHash() after the steps of this frame
+    std::uint64_t movement = 0;   // sand::Replica::movementDigest() after the steps of this frame
     std::uint64_t viewHash = 0;   // ViewProof::hash() of this frame's view
     base::Keystroke key{};        // key pressed in a window of this rank; without code if none was
     // [ns], durations of the movements and edits of this frame's steps, of their sweeps, and of audit and hash

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace lockstep {
 namespace {
 
 Account accountOf(sand::Replica& replica) {
-    Account account{replica.stateHash(), {}};
-    account.tiles = replica.hashTiles().tileHashes();
-    return account;
+    const std::uint64_t hash = replica.stateHash();  // brings the hashes of the tiles up to date
+    return {hash, replica.movementDigest(), replica.hashTiles().tileHashes()};
 }
 
 std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Replica& replica) {
@@ -37,35 +37,34 @@ std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, con
 /// Decides at the master which hash is right, and fills in `result`. Returns the hashes of the right sand.
 Account judge(const std::vector<Account>& accounts, const Arbiter& arbiter, Divergence& result) {
     const Vote vote = countVotes(accounts);
-    result.rightHash = vote.hash;
+    Account right = accounts[static_cast<std::size_t>(vote.rank)];
     if (vote.tie || arbiter.overrules) {
         result.outvoted = arbiter.overrules;
         result.journal = arbiter.sand ? arbiter.sand() : nullptr;
         result.judge = result.journal ? Divergence::Judge::journal : Divergence::Judge::master;
-        result.rightHash = result.journal ? result.journal->stateHash() : accounts[kMaster].hash;
+        right = result.journal ? accountOf(*result.journal) : accounts[kMaster];
     }
-    const auto right = [&](const Account& account) { return account.hash == result.rightHash; };
-    result.agreeing = static_cast<int>(std::count_if(accounts.begin(), accounts.end(), right));
-    if (result.agreeing == 0) {
-        return accountOf(*result.journal);
+    result.rightHash = right.hash;
+    const auto isRight = [&](const Account& account) { return account.sameSand(right); };
+    result.agreeing = static_cast<int>(std::ranges::count_if(accounts, isRight));
+    if (result.agreeing > 0) {
+        result.journal.reset();  // a rank holds the right sand
+        result.source = static_cast<int>(std::ranges::find_if(accounts, isRight) - accounts.begin());
     }
-    result.journal.reset();  // a rank holds the right sand
-    const auto first = std::find_if(accounts.begin(), accounts.end(), right);
-    result.source = static_cast<int>(first - accounts.begin());
-    return *first;
+    return right;
 }
 
 }  // namespace
 
 Vote countVotes(const std::vector<Account>& accounts) {
-    std::map<std::uint64_t, int> votes;
+    std::map<std::pair<std::uint64_t, std::uint64_t>, int> votes;
     for (const Account& account : accounts) {
-        ++votes[account.hash];
+        ++votes[{account.hash, account.movement}];
     }
     Vote result;
-    for (const auto& [hash, count] : votes) {
-        if (count > result.agreeing || (count == result.agreeing && hash == accounts[kMaster].hash)) {
-            result.hash = hash;
+    for (std::size_t rank = 0; rank < accounts.size(); ++rank) {  // the master first
+        if (const int count = votes[{accounts[rank].hash, accounts[rank].movement}]; count > result.agreeing) {
+            result.rank = static_cast<int>(rank);
             result.agreeing = count;
         }
     }
@@ -81,12 +80,13 @@ std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& r
     if (barrier.cluster().isMaster()) {
         const Account right = judge(accounts, arbiter, result);
         for (std::size_t rank = 0; rank < accounts.size(); ++rank) {
-            if (accounts[rank].hash != result.rightHash) {
+            if (!accounts[rank].sameSand(right)) {
                 const auto& mine = accounts[rank].tiles;
                 const auto differing = std::mismatch(mine.begin(), mine.end(), right.tiles.begin()).first;
                 Divergence::Odd& odd = result.odd.emplace_back();
                 odd.rank = static_cast<int>(rank);
                 odd.hash = accounts[rank].hash;
+                odd.onlyMovement = odd.hash == right.hash;
                 odd.tile = differing == mine.end() ? -1 : static_cast<int>(std::distance(mine.begin(), differing));
             }
         }

@@ -21,9 +21,10 @@ struct Divergence {
     struct Odd {
         int rank = 0;
         std::uint64_t hash = 0;
-        int tile = -1;           // first hash tile that differs; -1 if only probe, step number or outflow differ
-        sand::CellRect cells;    // cells of that tile
-        int cellsDiffering = 0;  // in that tile; counted for the first odd rank and for others with the same tile
+        bool onlyMovement = false;  // whether only the movement differs
+        int tile = -1;              // first hash tile whose sand differs; -1 if none does
+        sand::CellRect cells;       // cells of that tile
+        int cellsDiffering = 0;     // in that tile; counted for the first odd rank and for others with the same tile
     };
     /// The source of the right sand.
     enum class Judge : std::uint8_t {
@@ -44,15 +45,17 @@ struct Divergence {
     std::vector<Odd> odd;                    // in order of rank
 };
 
-/// Hashes of one rank's replica: the state hash and the hash of each hash tile.
+/// Hashes of one rank's replica: the state hash, the digest of its movement, and the hash of each hash tile.
 struct Account {
-    std::uint64_t hash = 0;
+    std::uint64_t hash = 0, movement = 0;
     std::vector<std::uint64_t> tiles;
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("hash", it.hash);
+        visit("movement", it.movement);
         visit("tiles", base::toEnd(it.tiles));
     }
+    [[nodiscard]] bool sameSand(const Account& other) const { return hash == other.hash && movement == other.movement; }
 };
 
 /// Number of the hash tile whose values all ranks send to the master, or -1.
@@ -73,14 +76,13 @@ struct TileValues {
     }
 };
 
-/// Result of counting how many ranks have each state hash.
+/// Result of counting how many ranks have the same state hash and movement.
 struct Vote {
-    // The most frequent hash. If several are equally frequent, the master's if it is one of them.
-    std::uint64_t hash = 0;
-    int agreeing = 0;  // number of ranks with this hash
-    bool tie = false;  // at most half of all ranks have this hash, so that no hash has a majority
+    int rank = 0;      // first rank of the largest group; the master's rank if its group is as large as any other
+    int agreeing = 0;  // number of ranks of this group
+    bool tie = false;  // at most half of all ranks belong to it, so that it is no majority
 };
-/// Counts how many ranks have each state hash.
+/// Counts how many ranks have the same state hash and movement.
 [[nodiscard]] Vote countVotes(const std::vector<Account>& accounts /* in order of rank, the master's first */);
 
 /// Function that returns the right sand when no hash has a majority, or null if it cannot. If `overrules`, its sand is

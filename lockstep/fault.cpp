@@ -23,6 +23,8 @@ void FaultsOfRank::strike(std::uint64_t frame, sand::Replica& replica) const {
             std::raise(fault.signal);
         } else if (fault.kind == Fault::Kind::diverge) {
             replica.corrupt(fault.column, fault.row, fault.bit);
+        } else if (fault.kind == Fault::Kind::movement) {
+            replica.corruptMovement(fault.column, fault.row);
         }
         while (fault.kind == Fault::Kind::hang) {
             std::this_thread::sleep_for(std::chrono::hours(1));

@@ -17,6 +17,7 @@ struct Fault {
     enum class Kind : std::uint8_t {
         slow,       // drawing takes longer
         diverge,    // one bit of the rank's sand flips
+        movement,   // the step that has last moved the sand of a hash tile changes
         die,        // the process gets a signal that ends it
         hang,       // the process stops and never continues
         garbage,    // random bytes are sent
@@ -26,10 +27,11 @@ struct Fault {
     };
     friend constexpr auto valuesOf(Kind) {
         using enum Kind;
-        return std::array{base::Named{slow, "slow"},       base::Named{diverge, "diverge"},
-                          base::Named{die, "die"},         base::Named{hang, "hang"},
-                          base::Named{garbage, "garbage"}, base::Named{partition, "partition"},
-                          base::Named{view, "view"},       base::Named{shader, "shader"}};
+        return std::array{base::Named{slow, "slow"},           base::Named{diverge, "diverge"},
+                          base::Named{movement, "movement"},   base::Named{die, "die"},
+                          base::Named{hang, "hang"},           base::Named{garbage, "garbage"},
+                          base::Named{partition, "partition"}, base::Named{view, "view"},
+                          base::Named{shader, "shader"}};
     }
     static constexpr int kLink = -1;  // instead of a rank: the link to the haptic server
 
@@ -38,9 +40,10 @@ struct Fault {
     std::uint64_t frame = 1;  // the fault strikes at the beginning of this frame
     // Number of frames from `frame` on that are drawn slowly; only for `slow`.
     std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
-    std::uint32_t milliseconds = 0;    // for `slow` and `partition`
-    int signal = 9;                    // for `die`
-    int column = 0, row = 0, bit = 0;  // for `diverge`: the cell, and the bit of its height; bit 0 is the lowest
+    std::uint32_t milliseconds = 0;  // for `slow` and `partition`
+    int signal = 9;                  // for `die`
+    int column = 0, row = 0;         // for `diverge` and `movement`: the cell
+    int bit = 0;                     // for `diverge`: the bit of the cell's height; bit 0 is the lowest
 
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
@@ -62,8 +65,8 @@ class FaultsOfRank {
 public:
     FaultsOfRank(const std::vector<Fault>& all, int rank);
 
-    /// Injects the faults at the beginning of frame `frame`: ends the process, never returns, or flips a bit of a cell
-    /// without updating the hash.
+    /// Injects the faults at the beginning of frame `frame`: ends the process, never returns, or flips a bit of the
+    /// sand or of its movement without updating the hash.
     void strike(std::uint64_t frame, sand::Replica& replica) const;
     /// Sleeps after frame `frame` has been drawn, if a fault makes it slow. A sleep leaves the cores free, as a slow
     /// graphics card does.

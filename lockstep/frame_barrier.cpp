@@ -246,10 +246,11 @@ Verdict FrameBarrier::meet(const Arrival& mine, std::int64_t nextFrame) {
             return std::any_of(arrivals_.begin(), arrivals_.end(),
                                [&](const Arrival& arrival) { return arrival.*hash != mine.*hash; });
         };
-        ending.verdict = !nonsense_.empty()             ? Verdict::nonsense
-                         : differs(&Arrival::stateHash) ? Verdict::otherSand
-                         : differs(&Arrival::viewHash)  ? Verdict::otherView
-                                                        : Verdict::equal;
+        const bool otherSand = differs(&Arrival::stateHash) || differs(&Arrival::movement);
+        ending.verdict = !nonsense_.empty()            ? Verdict::nonsense
+                         : otherSand                   ? Verdict::otherSand
+                         : differs(&Arrival::viewHash) ? Verdict::otherView
+                                                       : Verdict::equal;
         ending.quiet = std::max<std::int64_t>(0, nextFrame - host::monotonicNs());
         sendToAll(&ending, sizeof ending, kVerdictTag);
     } else {

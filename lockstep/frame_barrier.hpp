@@ -21,7 +21,7 @@ namespace lockstep {
 /// Result of the master's comparison when all ranks have arrived.
 enum class Verdict : std::uint8_t {
     equal,      // all hashes are equal
-    otherSand,  // state hashes differ; findDivergence() finds the ranks and the place
+    otherSand,  // state hashes or movements differ; findDivergence() finds the ranks and the place
     otherView,  // the sand is equal, but a rank drew another view or another wall
     nonsense    // a rank sent bytes that are not an arrival at this frame; nonsense() names it
 };

@@ -235,7 +235,12 @@ haptic_bridge::FrameCost Session::cost() const {
 }
 
 bool Session::agree(const lockstep::FrameMessage& frame) {
-    lockstep::Arrival mine{frame.frame, monotonicNs(), clock_.lastSwap(), 0, sand_.hash(), check_.viewHash(frame.view)};
+    lockstep::Arrival mine{.frame = frame.frame,
+                           .arrived = monotonicNs(),
+                           .lastSwap = clock_.lastSwap(),
+                           .stateHash = sand_.hash(),
+                           .movement = sand_.replica().movementDigest(),
+                           .viewHash = check_.viewHash(frame.view)};
     mine.dragged = sand_.time().dragNs;
     mine.swept = sand_.time().sweepNs;
     mine.hashed = sand_.time().hashNs;

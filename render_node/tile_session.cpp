@@ -111,6 +111,7 @@ public:
                                    lastSwap,
                                    drawn - start,
                                    hash,
+                                   replica_->movementDigest(),
                                    viewProof_.hash(frame.view),
                                    nextKey(),
                                    cost_.dragNs,
@@ -187,6 +188,7 @@ private:
                 draw(frame, figures);
             }
             mine.stateHash = replica_->stateHash();
+            mine.movement = replica_->movementDigest();
             verdict = barrier.meet(mine);
         }
         return verdict == lockstep::Verdict::equal;

@@ -30,7 +30,8 @@ struct Hashed {
     std::int32_t age;      // [sweep]
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
-        visit("head", it.head);
+        visit("hash version", base::constant(kHashVersion, "that of this release"));
+        StateHead::members(it.head, visit);
         visit("sand", it.sand);
         visit("outflow", it.outflow);
         visit("age", it.age);
@@ -78,6 +79,7 @@ void Replica::apply(const Step& step, const std::function<void()>& moved) {
     lastWork_ = {};
     if (refusedStep_) {
         stepNumber_ = step.number;
+        surface_->endStep(stepNumber_);
         return;
     }
     const ToolState before{rules_.tuning, probe_, heading_};
@@ -90,6 +92,7 @@ void Replica::apply(const Step& step, const std::function<void()>& moved) {
         skip(step, before, error.what());
     }
     refusedPress_ = surface_->refusedPresses().count != refusedBefore;
+    surface_->endStep(stepNumber_);
 }
 
 void Replica::skip(const Step& step, const ToolState& before, const char* why) {
@@ -281,13 +284,25 @@ std::uint64_t Replica::stateHash() {
     return XXH3_64bits(bytes.data(), bytes.size());
 }
 
+std::uint64_t Replica::movementDigest() const {
+    const Movement* const movement = surface_->movement();
+    return movement == nullptr ? 0 : movement->digest();
+}
+
 StateHead Replica::head() const { return {stepNumber_, probe_, heading_, engaged_, owed_, rules_.tuning}; }
 
-StateCopy Replica::copyState() const { return {base::encoded(head()), surface_->kept(), copySand()}; }
+StateCopy Replica::copyState() const {
+    base::ByteWriter movement;
+    if (surface_->movement() != nullptr) {
+        surface_->movement()->encode(movement);
+    }
+    return {base::encoded(head()), movement.take(), surface_->kept(), copySand()};
+}
 
 base::Bytes StateCopy::encode() const {
     base::ByteWriter writer;
     writer.putBytes(head);
+    writer.putBlock(movement);
     writer.putBlock(beforeStroke ? beforeStroke->encode() : base::Bytes());
     writer.putBytes(sand->encode());
     return writer.take();
@@ -297,6 +312,9 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     (void)base::needDefaultFloats();
     base::ByteReader reader(bytes);
     const auto head = base::read<StateHead>(reader);
+    const bool grid = surface_->movement() != nullptr;
+    const std::size_t tiles = grid ? static_cast<std::size_t>(hashTiles().tileCount()) : 0;
+    Movement movement = Movement::decode(reader.getBlock(), head.number, tiles);
     const auto beforeStroke = reader.getBlock();
     const SurfaceReader read = surface_->reader();
     // Decode the kept sand now, because at the undo it would be too late to refuse it.
@@ -311,6 +329,8 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     rules_.tuning = head.tuning;
     surface_->changeRules(rules_);
     surface_->replace(*sand);
+    (void)surface_->hash();  // so that the next step does not count as the one that changed this sand
+    surface_->resumeMovement(std::move(movement));
     stepNumber_ = head.number;
     engaged_ = head.engaged;
     owed_ = head.owed;

@@ -17,7 +17,9 @@
 namespace sand {
 
 /// Version of the bytes that Replica::encodeState() writes. Replica::decodeState() refuses every other version.
-inline constexpr std::uint32_t kStateVersion = 9;
+inline constexpr std::uint32_t kStateVersion = 10;
+/// Version of what the state hash covers, which is part of the hash.
+inline constexpr std::uint32_t kHashVersion = 9;
 
 /// All state of a replica except its sand.
 struct StateHead {
@@ -30,8 +32,13 @@ struct StateHead {
 
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
-        constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 62;  // so that the number of a step never overflows
         visit("state version", base::constant(kStateVersion, "that of this release"));
+        members(it, visit);
+    }
+    /// Visits all but the version, for the state hash.
+    template <class Self, class Visit>
+    static void members(Self& it, Visit& visit) {
+        constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 62;  // so that the number of a step never overflows
         visit("step", base::limited(it.number, 0, kMostSteps));
         for (auto* coordinate : {&it.probe.x, &it.probe.y, &it.probe.z}) {
             visit("probe", base::limited(*coordinate, -kMaxProbe, kMaxProbe));
@@ -46,6 +53,7 @@ struct StateHead {
 /// Copy of a replica's whole state. Another thread can compress it while the replica applies further steps.
 struct StateCopy {
     base::Bytes head;                                 // of StateHead
+    base::Bytes movement;                             // of Movement; empty for a TIN
     std::shared_ptr<const SurfaceCopy> beforeStroke;  // sand that an undo restores; null if there is none
     std::shared_ptr<const SurfaceCopy> sand;
 
@@ -154,6 +162,8 @@ public:
     /// Hashes the next `tiles` hash tiles again from memory, whether or not they have changed. Corrupted memory then
     /// changes stateHash().
     void audit(int tiles) { surface_->audit(tiles); }
+    /// Returns the digest of Surface::movement(), computed from memory; 0 for a TIN. The state hash does not cover it.
+    [[nodiscard]] std::uint64_t movementDigest() const;
     /// Returns the hashes of all hash tiles. stateHash() brings them up to date.
     [[nodiscard]] const HashTiles& hashTiles() const { return surface_->hashTiles(); }
     /// Returns the numbers in hash tile `tile`. Comparing those of two replicas shows where the replicas differ.
@@ -177,6 +187,9 @@ public:
     /// Flips bit `bit` (0 is the lowest) of one cell's height, or of the volume of a TIN's vertex in that cell's
     /// triangle. The hash is not updated. Tests and drills inject this fault to prove that a divergence is found.
     void corrupt(int column, int row, int bit = 0) { surface_->corrupt(column, row, bit); }
+    /// Flips the lowest bit of the step that has last moved the sand of one cell's hash tile. Has no effect on a TIN.
+    /// Drills inject this fault.
+    void corruptMovement(int column, int row) { surface_->corruptMovement(column, row); }
 
 private:
     /// Values that a step changes along with the sand.

@@ -33,7 +33,7 @@ Costs measure(int side, double radius, bool skipSettled, int runs) {
         erosion.touch(tool.drag(field, rules.rim, nullptr, probe, probe).cells);
         erosion.sweep(field, kStepSweeps);
         costs.step.push_back(cpuSeconds() - before);
-        costs.hash = sand::grid::TileHash(field).update(field);
+        costs.hash = sand::grid::TileHash(field).sum();
         if (skipSettled) {
             const double paused = cpuSeconds();
             erosion.sweep(field, kMostSweeps);

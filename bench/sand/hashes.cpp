@@ -31,7 +31,7 @@ std::uint64_t hashAfterEdits(int side, std::uint32_t seed, sand::Scheme scheme,
         erosion.touch(tool.drag(field, rules.rim, nullptr, from, to).cells);
         erosion.sweep(field, 1 + static_cast<int>(random() % 8));
     }
-    return sand::grid::TileHash(field).update(field);
+    return sand::grid::TileHash(field).sum();
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ bool Agreement::reach(lockstep::Arrival mine, MasterSand& sand, StepSource& step
     if (overruling_) {
         // The master arrives with the journal's hash. All ranks then have other sand, and are healed.
         mine.stateHash = overruling_->stateHash();
+        mine.movement = overruling_->movementDigest();
     }
     lockstep::Verdict verdict = ranks_.meet(mine, next);
     for (bool again = false; verdict != lockstep::Verdict::equal; again = true) {
@@ -55,6 +56,7 @@ bool Agreement::reach(lockstep::Arrival mine, MasterSand& sand, StepSource& step
         }
         sand.rehash();
         mine.stateHash = sand.hash();
+        mine.movement = sand.replica().movementDigest();
         verdict = ranks_.meet(mine, next);
     }
     overruling_.reset();  // unused if an edit has restored the right sand meanwhile

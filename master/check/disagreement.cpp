@@ -14,6 +14,9 @@ namespace master {
 namespace {
 
 std::string placeOf(const lockstep::Divergence::Odd& odd) {
+    if (odd.onlyMovement) {
+        return "only in the steps in which its sand moved last";
+    }
     return odd.tile < 0
                ? "in probe, step or outflow"
                : fmt::format("first in hash tile {} (columns {}..{}, rows {}..{}), {} cells of it", odd.tile,

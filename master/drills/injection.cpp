@@ -32,6 +32,7 @@ using Kind = lockstep::Fault::Kind;
 /// Form of each kind of fault, in the order of Kind.
 constexpr std::array<std::string_view, valuesOf(Kind{}).size()> kUsage{"slow:rank=R,ms=MS[,frame=FIRST][,frames=COUNT]",
                                                                        "diverge:rank=R,frame=F[,column=C,row=W,bit=B]",
+                                                                       "movement:rank=R,frame=F[,column=C,row=W]",
                                                                        "die:rank=R,frame=F[,signal=S]",
                                                                        "hang:rank=R,frame=F",
                                                                        "garbage:frame=F[,rank=R]",
@@ -117,6 +118,12 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
                     {"row", 0, last(targets.rows), &row, false},
                     {"bit", 0, kHighestBit, &bit, false}};
             break;
+        case Kind::movement:
+            keys = {ofAll,
+                    frame,
+                    {"column", 0, last(targets.columns), &column, false},
+                    {"row", 0, last(targets.rows), &row, false}};
+            break;
         case Kind::die:
             keys = {ofAll, frame, {"signal", 1, kMostSignal, &signal, false}};
             break;
@@ -145,6 +152,9 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
             fmt::format("--inject {}: without a rank the fault is for the link to a haptic server, but --haptic names "
                         "no server; add rank=R",
                         text));
+    }
+    if (fault.kind == Kind::movement && !targets.movement) {
+        throw base::InputError(fmt::format("--inject {}: a TIN records no movement; take a scene with a grid", text));
     }
     if (std::find(kHarmless.begin(), kHarmless.end(), signal) != kHarmless.end()) {
         throw base::InputError(

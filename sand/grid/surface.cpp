@@ -32,6 +32,7 @@ GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shar
     base::ByteWriter writer;
     encodeCells(field_.cells(), field_.bounds(), writer);
     start_ = std::make_shared<const base::Bytes>(writer.take());
+    movement_.moved.assign(static_cast<std::size_t>(hash_.tileCount()), 0);
 }
 
 std::unique_ptr<Surface> GridSurface::clone() const {
@@ -155,6 +156,21 @@ void GridSurface::replace(const SurfaceCopy& copy) {
     erosion_.resume(sand.inertia);
     outflow_ = sand.outflow;
     touchAll();
+}
+
+std::uint64_t GridSurface::hash() {
+    hash_.update(field_, [](int) {});  // outside steps only a state changes the sand, and it has its own movement
+    return hash_.sum();
+}
+
+void GridSurface::endStep(std::uint64_t number) {
+    movement_.step = number;
+    hash_.update(field_, [this](int tile) { movement_.add(tile); });
+}
+
+void GridSurface::corruptMovement(int column, int row) {
+    const int across = (field_.columns() + kHashTile - 1) / kHashTile;
+    movement_.moved[static_cast<std::size_t>(row / kHashTile * across + column / kHashTile)] ^= 1;
 }
 
 void GridSurface::audit(int tiles) {

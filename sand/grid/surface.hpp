@@ -3,12 +3,14 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/displacement.hpp"
 #include "sand/grid/erosion.hpp"
 #include "sand/grid/snapshot.hpp"
 #include "sand/grid/tile_hash.hpp"
+#include "sand/model/movement.hpp"
 #include "sand/model/surface.hpp"
 
 namespace sand::grid {
@@ -51,7 +53,11 @@ public:
     [[nodiscard]] bool settled() const override { return erosion_.settled(); }
     [[nodiscard]] int age() const override { return erosion_.undisturbed(); }
 
-    [[nodiscard]] std::uint64_t hash() override { return hash_.update(field_); }
+    [[nodiscard]] std::uint64_t hash() override;
+    void endStep(std::uint64_t number) override;
+    [[nodiscard]] const Movement* movement() const override { return &movement_; }
+    void resumeMovement(Movement movement) override { movement_ = std::move(movement); }
+    void corruptMovement(int column, int row) override;
     void audit(int tiles) override;
     [[nodiscard]] const HashTiles& hashTiles() const override { return hash_; }
     [[nodiscard]] std::vector<std::int32_t> valuesOf(int tile) const override;
@@ -61,7 +67,7 @@ public:
     [[nodiscard]] HeightSpan heights() const override;
     [[nodiscard]] bool readsKept() const override { return true; }
     [[nodiscard]] std::optional<double> keptHeight(double x, double y) const override;
-    [[nodiscard]] SurfaceData data() const override { return GridData{field_, ground_.get()}; }
+    [[nodiscard]] SurfaceData data() const override { return GridData{field_, ground_.get(), &movement_}; }
     [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
@@ -75,6 +81,7 @@ private:
     HeightField field_;
     Erosion erosion_;
     TileHash hash_;
+    Movement movement_;
     RefusedPresses refused_;
     std::int64_t outflow_ = 0;
     std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; clones share them

@@ -12,7 +12,10 @@ TileHash::TileHash(const HeightField& field)
     : columns_(field.columns()), rows_(field.rows()), tilesAcross_((columns_ + kHashTile - 1) / kHashTile) {
     const int tilesDown = (rows_ + kHashTile - 1) / kHashTile;
     hashes_.assign(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>(tilesDown), 0);
-    dirty_.assign(hashes_.size(), 1);
+    dirty_.assign(hashes_.size(), 0);
+    for (int tile = 0; tile < tileCount(); ++tile) {
+        rehash(field, tile);
+    }
 }
 
 CellRect TileHash::cellsOf(int tile) const {
@@ -29,7 +32,7 @@ void TileHash::touch(const CellRect& cells) {
     }
 }
 
-void TileHash::rehash(const HeightField& field, int tile) {
+bool TileHash::rehash(const HeightField& field, int tile) {
     // Packs the heights of the tile, because one call on 4 KiB is faster than 32 streamed rows.
     std::array<std::int32_t, kHashTile * kHashTile> packed;
     const CellRect cells = cellsOf(tile);
@@ -40,18 +43,19 @@ void TileHash::rehash(const HeightField& field, int tile) {
     const auto bytes = static_cast<std::size_t>(end - packed.begin()) * sizeof packed[0];
     const std::uint64_t hash = XXH3_64bits_withSeed(packed.data(), bytes, static_cast<std::uint64_t>(tile));
     std::uint64_t& stored = hashes_[static_cast<std::size_t>(tile)];
+    const bool changed = hash != stored;
     sum_ += hash - stored;
     stored = hash;
     dirty_[static_cast<std::size_t>(tile)] = 0;
+    return changed;
 }
 
-std::uint64_t TileHash::update(const HeightField& field) {
+void TileHash::update(const HeightField& field, const std::function<void(int)>& changed) {
     for (int tile = 0; tile < tileCount(); ++tile) {
-        if (dirty_[static_cast<std::size_t>(tile)] != 0) {
-            rehash(field, tile);
+        if (dirty_[static_cast<std::size_t>(tile)] != 0 && rehash(field, tile)) {
+            changed(tile);
         }
     }
-    return sum_;
 }
 
 int TileHash::auditNext(const HeightField& field) {

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "sand/model/height_field.hpp"
+#include "sand/model/movement.hpp"
 #include "sand/model/surface.hpp"
 
 namespace sand::grid {
-
-inline constexpr int kHashTile = 32;  // [cell], side of a hash tile
 
 /// Hash of all heights. An update costs only the changed tiles.
 ///
@@ -22,8 +22,11 @@ public:
 
     /// Marks the tiles that overlap `cells` as changed.
     void touch(const CellRect& cells);
-    /// Hashes the changed tiles again. Returns the sum over all tiles.
-    [[nodiscard]] std::uint64_t update(const HeightField& field);
+    /// Hashes the marked tiles again, and calls `changed` with each tile whose hash is another one. The tiles that are
+    /// marked may depend on how the sand is swept; those that have changed do not.
+    void update(const HeightField& field, const std::function<void(int)>& changed);
+    /// Returns the sum over all tiles at the last update.
+    [[nodiscard]] std::uint64_t sum() const { return sum_; }
     /// Hashes the next tile of the field again, whether or not it changed. Returns its index.
     int auditNext(const HeightField& field);
     /// Makes the hash of `tile` differ. Call it if the tile is corrupt in memory that its hash does not cover.
@@ -33,7 +36,8 @@ public:
     [[nodiscard]] CellRect cellsOf(int tile) const override;
 
 private:
-    void rehash(const HeightField& field, int tile);
+    /// Hashes a tile again. Returns whether its hash has changed.
+    bool rehash(const HeightField& field, int tile);
 
     int columns_, rows_, tilesAcross_;
     std::vector<std::uint8_t> dirty_;

@@ -11,6 +11,7 @@
 
 #include "base/byte_stream.hpp"
 #include "sand/model/cell_array.hpp"
+#include "sand/model/movement.hpp"
 #include "sand/model/owed.hpp"
 #include "sand/model/refused_press.hpp"
 #include "sand/model/rules.hpp"
@@ -145,6 +146,15 @@ public:
     [[nodiscard]] virtual bool atRest() const { return settled(); }
     /// Returns the age of the inertia that sand carries from step to step [sweep]; 0 for a TIN, which carries none.
     [[nodiscard]] virtual int age() const = 0;
+
+    /// Called at the end of each step. A height field records in which hash tiles step `number` has changed a height.
+    virtual void endStep(std::uint64_t /* number */) {}
+    /// Returns when the sand moved last, or null for a TIN.
+    [[nodiscard]] virtual const Movement* movement() const { return nullptr; }
+    /// Replaces movement(), after replace(), by that of a state. Called only if movement() is not null.
+    virtual void resumeMovement(Movement /* movement */) {}
+    /// Changes a bit of movement(), as Replica::corruptMovement() describes.
+    virtual void corruptMovement(int /* column */, int /* row */) {}
 
     /// Returns the hash of all sand. Hashes again only what has changed since the last call.
     [[nodiscard]] virtual std::uint64_t hash() = 0;

@@ -7,6 +7,7 @@
 
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
+#include "sand/model/movement.hpp"
 
 namespace sand {
 
@@ -17,7 +18,8 @@ struct SurfaceView;
 /// References to the sand of a height field.
 struct GridData {
     const HeightField& field;
-    const Ground* ground = nullptr;  // null without rock and wall cells
+    const Ground* ground = nullptr;      // null without rock and wall cells
+    const Movement* movement = nullptr;  // null if all sand counts as at rest
 };
 
 /// Reference to the sand of a TIN.

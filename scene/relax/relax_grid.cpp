@@ -119,7 +119,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const std::optio
     json["steepest_over_talus"] = steepest / sand.rules.tuning.threshold;
     json["steepest_deg"] = std::atan(steepest * sand.scale.unit / grid.cellSize) * 180 / std::numbers::pi;
     json["certificate"] = certificatePart(sand, timed.relaxed);
-    json["state_hash"] = fmt::format("{:016x}", sand::grid::TileHash(sand.field).update(sand.field));
+    json["state_hash"] = fmt::format("{:016x}", sand::grid::TileHash(sand.field).sum());
     return json;
 }
 

@@ -101,6 +101,19 @@ TEST_F(Healing, LeavesNoTraceInPicturesAndSand) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/failure.json"));
 }
 
+// The digging has moved the sand there before the fault. Without the healing, rank 2 would draw another level later.
+TEST_F(Healing, FindsAndHealsMovementThatDiffers) {
+    const std::string wallFile = wall(1, 2);
+    ASSERT_EQ(dig(wallFile, {}, "undisturbed").status, 0);
+    const Ended ended = dig(wallFile, {"movement:rank=2,frame=30,column=64,row=64", "movement:rank=0,frame=45"}, "out");
+    ASSERT_EQ(ended.status, 0) << ended.output;
+    EXPECT_NE(ended.output.find("only in the steps in which its sand moved last"), std::string::npos) << ended.output;
+    expectHealed(ended, {{"frame", 30}, {"rank", 2}, {"source", "rank"}, {"source_rank", 0}, {"times", 1}});
+    expectHealed(ended, {{"frame", 45}, {"rank", 0}, {"source", "rank"}, {"source_rank", 1}, {"times", 1}});
+    EXPECT_EQ(summary()["state_hash"], json("undisturbed/summary.json")["state_hash"]);
+    expectEqualPictures("undisturbed", "out");
+}
+
 // A column of sand four cells high appears in the middle of a sliding dune, in the frame whose pictures are written.
 TEST_F(Healing, RedrawsTheFrameInWhichItHappens) {
     ASSERT_EQ(slide({"--frames", "20"}, "undisturbed").status, 0);

@@ -40,13 +40,14 @@ inline base::Bytes packedSand(base::ByteReader& plain, const scene::Scene& scene
     return scene.tin != nullptr ? packedTin(plain) : packedGrid(plain, scene.rules.columns, scene.rules.rows);
 }
 
-/// Returns a state: its head with a length before it, the sand that is kept for an undo with a length before it (0: no
-/// sand is kept), and the sand. The kind of `scene` decides how both are read.
+/// Returns a state: its head and its movement, each with a length before it, the sand that is kept for an undo with a
+/// length before it (0: no sand is kept), and the sand. The kind of `scene` decides how both are read.
 inline base::Bytes packedState(Input plain, const scene::Scene& scene) {
     base::ByteReader reader(plain);
     const auto part = [&reader] { return reader.getBytes(reader.get<std::uint16_t>()); };
     base::ByteWriter state;
     state.putBytes(part());
+    state.putBlock(part());
     const auto kept = part();
     base::ByteReader keptReader(kept);
     state.putBlock(kept.empty() ? base::Bytes() : packedSand(keptReader, scene));

@@ -190,6 +190,7 @@ Bytes plainOf(const sand::Replica& replica) {
 Bytes plainStateOf(const sand::Replica& replica, const sand::Replica& before) {
     base::ByteWriter plain;
     plain.putBytes(piece(replica.copyState().head));
+    plain.putBytes(piece(replica.copyState().movement));
     plain.putBytes(piece(plainOf(before)));
     plain.putBytes(plainOf(replica));
     return plain.take();

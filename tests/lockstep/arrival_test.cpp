@@ -23,7 +23,7 @@ using Room = std::array<std::uint8_t, lockstep::kArrivalRoom>;
 
 /// Returns the bytes of an arrival at frame `frame`, as MPI writes them into the buffer.
 Room letterOf(std::uint64_t frame) {
-    const Arrival arrival{frame, 1, 2, 3, 4, 5, kKey};
+    const Arrival arrival{frame, 1, 2, 3, 4, 5, 6, kKey};
     Room room{};
     std::memcpy(room.data(), &arrival, sizeof arrival);
     return room;
@@ -46,7 +46,8 @@ TEST(Arrival, ComesBackAsItWent) {
     EXPECT_EQ(read.lastSwap, 2);
     EXPECT_EQ(read.drawn, 3);
     EXPECT_EQ(read.stateHash, 4U);
-    EXPECT_EQ(read.viewHash, 5U);
+    EXPECT_EQ(read.movement, 5U);
+    EXPECT_EQ(read.viewHash, 6U);
     EXPECT_EQ(read.key, kKey);
 }
 
@@ -151,7 +152,7 @@ TEST(Arrival, OfADrillIsNoiseOfThreeKindsByTurns) {
 }
 
 TEST(Arrival, WithAnUnknownStateOfAMonitorIsNone) {
-    Arrival arrival{kFrame, 1, 2, 3, 4, 5, kKey};
+    Arrival arrival{kFrame, 1, 2, 3, 4, 5, 6, kKey};
     arrival.monitors = {1, 2};
     Room room{};
     std::memcpy(room.data(), &arrival, sizeof arrival);

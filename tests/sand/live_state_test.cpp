@@ -30,6 +30,7 @@ void play(Replica& sand, const scene::Scene& scene, const Step& step, std::mt199
         Replica other(scene);
         ASSERT_NO_THROW(other.decodeState(sand.encodeState())) << "step " << sand.stepNumber();
         ASSERT_EQ(other.stateHash(), sand.stateHash()) << "step " << sand.stepNumber();
+        ASSERT_EQ(other.movementDigest(), sand.movementDigest()) << "step " << sand.stepNumber();
         ASSERT_NO_THROW((void)sand.sandReader()(sand.copySand()->encode())) << "step " << sand.stepNumber();
     }
 }

@@ -321,6 +321,7 @@ TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
     base::Bytes state = dug.encodeState();
     base::ByteReader reader(state);
     (void)base::read<sand::StateHead>(reader);
+    (void)reader.getBlock();  // movement
     constexpr std::size_t kBefore =
         4 + 8 + 4;  // length of the sand before the stroke, its outflow, length of its heights
     state[state.size() - reader.rest().size() + kBefore] ^= 0xff;  // the first byte of the compressed heights

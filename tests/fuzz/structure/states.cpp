@@ -142,6 +142,23 @@ void change(sand::StateHead& head, Chance& chance) {
     }
 }
 
+/// Returns the bytes of the movement of `sand`, often with another number, and now and then with too few or too many.
+base::Bytes changedMovement(const Replica& sand, Chance& chance) {
+    if (sand.surface().movement() == nullptr) {
+        return chance.oneIn(16) ? base::Bytes{1, 0} : base::Bytes();
+    }
+    sand::Movement movement = *sand.surface().movement();
+    if (chance.oneIn(2)) {
+        movement.moved[chance.below(movement.moved.size())] = chance.below(movement.step + (chance.oneIn(4) ? 9 : 1));
+    }
+    if (chance.oneIn(16)) {
+        movement.moved.resize(movement.moved.size() + chance.below(3) - 1);
+    }
+    base::ByteWriter writer;
+    movement.encode(writer);
+    return writer.take();
+}
+
 }  // namespace
 
 void change(sand::Tuning& tuning, Chance& chance) {
@@ -183,6 +200,7 @@ base::Bytes changedState(const Session& session, Chance& chance) {
     }
     base::ByteWriter state;
     base::putMember(state, head);
+    state.putBlock(changedMovement(sand, chance));
     // The sand for an undo is that of another step, which may not be from before a stroke.
     state.putBlock(chance.oneIn(2) ? base::Bytes() : changedSand(chance.of(session.states), chance));
     state.putBytes(chance.oneIn(8) ? sand.copySand()->encode() : changedSand(sand, chance));

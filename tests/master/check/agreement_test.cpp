@@ -49,11 +49,11 @@ public:
         std::vector<lockstep::Account> accounts;
         accounts.reserve(hashes.size());
         for (const std::uint64_t hash : hashes) {
-            accounts.push_back({hash, {}});
+            accounts.push_back({hash, 0, {}});
         }
         const lockstep::Vote vote = lockstep::countVotes(accounts);
         Divergence result;
-        result.rightHash = vote.hash;
+        result.rightHash = hashes[static_cast<std::size_t>(vote.rank)];
         result.agreeing = vote.agreeing;
         if (vote.tie || arbiter.overrules) {
             result.outvoted = arbiter.overrules;
@@ -64,7 +64,7 @@ public:
         result.source = -1;
         for (int rank = 0; rank < 3; ++rank) {
             if (hashes[static_cast<std::size_t>(rank)] != result.rightHash) {
-                result.odd.push_back({rank, hashes[static_cast<std::size_t>(rank)], -1, {}, 0});
+                result.odd.push_back({rank, hashes[static_cast<std::size_t>(rank)], false, -1, {}, 0});
             } else if (result.source < 0) {
                 result.source = rank;
                 result.journal.reset();

@@ -28,6 +28,8 @@ TEST(Injection, KnowsEveryKindOfFault) {
               (Fault{.kind = Fault::Kind::diverge, .rank = 0, .frame = 9}));
     EXPECT_EQ(master::parseFault("diverge:rank=3,frame=9,column=199,row=99,bit=20", kWall),
               (Fault{.kind = Fault::Kind::diverge, .rank = 3, .frame = 9, .column = 199, .row = 99, .bit = 20}));
+    EXPECT_EQ(master::parseFault("movement:rank=0,frame=9,column=199,row=99", kWall),
+              (Fault{.kind = Fault::Kind::movement, .rank = 0, .frame = 9, .column = 199, .row = 99}));
     EXPECT_EQ(master::parseFault("die:rank=0,frame=9", kWall),
               (Fault{.kind = Fault::Kind::die, .rank = 0, .frame = 9, .signal = 9}));
     EXPECT_EQ(master::parseFault("die:rank=12,frame=9,signal=11", kWall),
@@ -73,6 +75,8 @@ TEST(Injection, ThatCannotBeIsNamedInOneLine) {
                                      {"diverge:rank=1,frame=1,column=200", "column must be 0 to 199, got '200'"},
                                      {"diverge:rank=1,frame=1,row=100", "row must be 0 to 99, got '100'"},
                                      {"diverge:rank=1,frame=1,bit=28", "bit must be 0 to 27, got '28'"},
+                                     {"movement:rank=1,frame=1,row=100", "row must be 0 to 99, got '100'"},
+                                     {"movement:rank=1,frame=1,bit=2", "'bit=2' is not understood"},
                                      {"garbage:rank=0,frame=1", "rank must be 1 to 12, got '0'"},
                                      {"partition:frame=1", "ms is missing"}}) {
         try {
@@ -84,6 +88,17 @@ TEST(Injection, ThatCannotBeIsNamedInOneLine) {
             EXPECT_EQ(said.find("--inject " + std::string(text) + ": "), 0U) << said;
             EXPECT_EQ(said.find('\n'), std::string::npos) << said;
         }
+    }
+}
+
+TEST(Injection, OfMovementNeedsAGrid) {
+    master::FaultTargets tin = kWall;
+    tin.movement = false;
+    try {
+        (void)master::parseFault("movement:rank=1,frame=9", tin);
+        ADD_FAILURE() << "was accepted";
+    } catch (const base::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("take a scene with a grid"), std::string::npos) << error.what();
     }
 }
 

@@ -121,7 +121,9 @@ private:
     }
     /// Returns the lowest and the highest sand. Walls and bare rock have none.
     [[nodiscard]] std::pair<std::int32_t, std::int32_t> extremes() const {
-        const auto [field, ground] = std::get<sand::GridData>(sand_.surface().data());
+        const auto grid = std::get<sand::GridData>(sand_.surface().data());
+        const sand::HeightField& field = grid.field;
+        const sand::Ground* const ground = grid.ground;
         std::pair result{std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()};
         for (int y = 0; y < case_.rows; ++y) {
             for (int x = 0; x < case_.columns; ++x) {

@@ -228,11 +228,12 @@ inline std::map<std::pair<int, int>, std::int64_t> volumesByPart(const sand::Rep
     };
     std::map<std::pair<int, int>, std::int64_t> volumes;
     if (sand.rules().tin == 0) {
-        const auto [field, ground] = std::get<sand::GridData>(sand.surface().data());
+        const auto grid = std::get<sand::GridData>(sand.surface().data());
+        const sand::HeightField& field = grid.field;
         const auto columns = static_cast<std::size_t>(field.columns()), rows = static_cast<std::size_t>(field.rows());
         up.resize(columns * rows);
         std::iota(up.begin(), up.end(), std::size_t{0});
-        const auto isWall = [&, rockAndWalls = ground](std::size_t at) {
+        const auto isWall = [&, rockAndWalls = grid.ground](std::size_t at) {
             return rockAndWalls != nullptr &&
                    rockAndWalls->isWall(static_cast<int>(at % columns), static_cast<int>(at / columns));
         };

@@ -79,8 +79,10 @@ inline base::Bytes withOutflow(base::Bytes sand, std::int64_t outflow) {
 /// Returns a state of `replica`, but with other sand.
 inline base::Bytes stateWith(const sand::Replica& replica, const base::Bytes& sand) {
     base::ByteWriter state;
-    state.putBytes(replica.copyState().head);
-    state.putBlock({});
+    const sand::StateCopy copy = replica.copyState();
+    state.putBytes(copy.head);
+    state.putBlock(copy.movement);
+    state.putBlock({});  // no sand for an undo
     state.putBytes(sand);
     return state.take();
 }
