@@ -73,6 +73,7 @@ struct FrameMessage {
     std::uint32_t auditTiles = 0;        // number of hash tiles that each rank hashes again from memory
     bool capture = false;                // each render rank sends its pictures of this frame to the master
     bool stop = false;                   // this is the last frame
+    bool sharp = false;                  // moving sand is drawn as finely as sand at rest
     std::vector<sand::Step> steps;       // to be applied before the frame is drawn
     std::vector<Answer> answers{};       // at most one for each rank; none in a frame with pictures
     std::optional<WallFigures> figures;  // only while Overlay::statistics is shown; the barrier does not compare them
@@ -82,7 +83,7 @@ struct FrameMessage {
         visit("frame", base::varint(it.frame));
         visit("view", it.view);
         visit("audit_tiles", base::varint(it.auditTiles));
-        visit("flags", base::flags(it.capture, it.stop));
+        visit("flags", base::flags(it.capture, it.stop, it.sharp));
         visit("steps", base::upTo(it.steps, sand::kMostStepsOfAFrame));
         visit("answers", base::upTo(it.answers, kMostAnswers));
         visit("figures", it.figures);

@@ -121,6 +121,8 @@ lockstep::FrameMessage Session::compose(const ArrivedSteps& steps) {
     const bool last = ends() || shownThen >= options_.steps;
     frame.stop = last && check_.mayEnd(now, shownThen);
     frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.needsCapture());
+    // Moving sand is drawn more coarsely in pictures that are soon replaced, and in no others.
+    frame.sharp = frame.capture || frame.stop || held();
     if (!frame.capture) {  // pictures show no answers
         frame.answers = desk_.windows().answers(now);
     }

@@ -49,7 +49,8 @@ std::vector<PixelRect> Redraw::pixels(const Camera& camera, const ShownScene& sc
     const glm::dmat4 sceneToClip = camera.roomToClip * scene.sceneToRoom;
     const ShownScene& before = memory.scene;
     if (!memory.drawn || memory.camera != camera || before.sceneToRoom != scene.sceneToRoom ||
-        before.layers != scene.layers || before.humidity != scene.humidity) {
+        before.layers != scene.layers || before.humidity != scene.humidity ||
+        (before.sharp != scene.sharp && surface_.moves())) {
         memory.levels = surface_.levelsWithin(sceneToClip, rule);
         return {whole};
     }

@@ -30,6 +30,7 @@ struct ShownScene {
     std::optional<ForceArrow> force;
     lockstep::Overlays layers;  // only the layers that change every pixel of the sand
     double humidity = 0;        // of the sand, 0 to 1
+    bool sharp = false;         // whether moving sand is drawn as finely as sand at rest
 };
 
 /// Record of the picture that one view has last drawn into one target. The caller keeps one for each eye.

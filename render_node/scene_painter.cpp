@@ -32,8 +32,9 @@ ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& s
              .tool = {},
              .force = {},
              .layers = {},
-             .humidity = scene.material.humidity},
-      surface_(makeDrawnSurface(start, scene.terrain.cellSize(), sun_)),
+             .humidity = scene.material.humidity,
+             .sharp = false},
+      surface_(makeDrawnSurface(start, scene.terrain.cellSize(), sun_, scene.rules.stepsPerSecond)),
       programs_(look_.flatShading),
       grain_(glm::vec2(sun_)),
       box_(std::make_unique<shapes::SandBox>(surface_->rim(), surface_->heightsEver().lowest,
@@ -245,7 +246,7 @@ PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& tar
 
 LevelRule ScenePainter::ruleFor(const Camera& camera, glm::ivec2 size) const {
     // With flat shading the size of the triangles is visible, so that all chunks have level 0.
-    return {camera.roomToClip * shown_.sceneToRoom, size, look_.flatShading ? 0 : look_.detail};
+    return {camera.roomToClip * shown_.sceneToRoom, size, look_.flatShading ? 0 : look_.detail, shown_.sharp};
 }
 
 }  // namespace render_node

@@ -66,6 +66,8 @@ public:
     /// Draws wet sand from now on: darker and with a sheen, by its humidity from 0 (dry) to 1. At first the humidity is
     /// that of the scene's material. The first drawing of wet sand makes its programs, as setLayers() says.
     void setHumidity(double humidity) { shown_.humidity = humidity; }
+    /// Draws moving sand from now on as finely as sand at rest, or, as at first, more coarsely.
+    void setSharp(bool sharp) { shown_.sharp = sharp; }
     /// Shows this arrow from now on, or no arrow, as at first. The first draw() with an arrow throws std::runtime_error
     /// if a shader does not compile.
     void setForce(const std::optional<ForceArrow>& force) { shown_.force = force; }

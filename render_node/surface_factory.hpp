@@ -7,9 +7,10 @@
 
 namespace render_node {
 
-/// Returns the surface of this sand in GL. `sun` points towards the sun and has length 1. The GL context must be
-/// current.
+/// Returns the surface of this sand in GL. `sun` points towards the sun and has length 1. `stepsPerSecond` says for how
+/// many steps sand counts as moving. The GL context must be current.
 [[nodiscard]] std::unique_ptr<DrawnSurface> makeDrawnSurface(const sand::SurfaceData& data,
-                                                             double cellSize /* [scene unit] */, const glm::vec3& sun);
+                                                             double cellSize /* [scene unit] */, const glm::vec3& sun,
+                                                             int stepsPerSecond);
 
 }  // namespace render_node

@@ -54,6 +54,8 @@ public:
 
     /// Makes the next paint() draw every eye whole. Called when the sand that was drawn may have been wrong.
     void drawAgain();
+    /// Draws moving sand from now on as finely as sand at rest, or, as at first, more coarsely.
+    void setSharp(bool sharp) { scenePainter_.setSharp(sharp); }
 
     /// Draws the parts of each eye's picture that changed, and composes the outputs. Does not wait for GL;
     /// GlContext::present() does. Throws std::runtime_error if a shader of an overlay or a test pattern does not

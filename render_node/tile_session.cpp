@@ -168,6 +168,7 @@ private:
     void draw(const lockstep::FrameMessage& frame, const TileFigures& figures) {
         // showsEyesInTurn() describes the previous frame, which may have had another stereo mode.
         const bool inTurn = context_->showsEyesInTurn() && shown_.stereo == walls::Stereo::active;
+        painter_->setSharp(frame.sharp);
         painter_->paint(*replica_, frame.view, frame.frame, inTurn && !frame.capture, figures, frame.answers);
         context_->present(painter_->outputs(), painter_->changed(), frame.frame);
     }

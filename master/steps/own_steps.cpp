@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/print_line.hpp"
+#include "shapes/grid/sharpening.hpp"
 
 namespace master {
 
@@ -12,11 +13,17 @@ bool OwnSteps::wouldChange(const sand::Replica& sand, bool edited) {
     return edited || !sand.atRest() || (hand().present() ? hand().moves() : sand.engaged());
 }
 
-void OwnSteps::followRest(std::int64_t nowNs, bool changes) {
+bool OwnSteps::drawnAsResting(const sand::Replica& sand) const {
+    const sand::Movement* const movement = sand.surface().movement();
+    return movement == nullptr || shapes::Sharpening(stepsPerSecond_, movement->moved.size()).allSharp(*movement);
+}
+
+void OwnSteps::followRest(std::int64_t nowNs, bool changes, const sand::Replica& sand) {
     if (changes) {
         movedNs_ = nowNs;
     }
-    rests_ = atRest_ == AtRest::makesNone && static_cast<double>(nowNs - movedNs_) * 1e-9 >= kRestAfter;
+    rests_ = atRest_ == AtRest::makesNone && static_cast<double>(nowNs - movedNs_) * 1e-9 >= kRestAfter &&
+             drawnAsResting(sand);
     if (rests_) {
         hand().forgetRest();  // otherwise the path after the rest would begin with samples that are as old
     }
@@ -27,7 +34,7 @@ std::size_t OwnSteps::due(std::int64_t nowNs, const sand::Replica& sand, bool ed
         return 1;
     }
     const bool rested = rests_;
-    followRest(nowNs, wouldChange(sand, edited));
+    followRest(nowNs, wouldChange(sand, edited), sand);
     if (rests_) {
         return 0;
     }

@@ -25,7 +25,8 @@ enum class AtRest : std::uint8_t { makesSteps, makesNone };
 /// hand the tool hovers. Used by one thread. The scene must outlive this object.
 class OwnSteps {
 public:
-    /// Time for which sand and hand have been at rest when the last step is made [s].
+    /// Time for which sand and hand have been at rest when the last step is made [s]. In a large field more steps
+    /// follow, until all of the sand is drawn as sand at rest (shapes::Sharpening).
     static constexpr double kRestAfter = 1;
 
     /// Under the fast pace, `atRest` has no effect: each frame has a step.
@@ -67,7 +68,8 @@ private:
     }
     /// Returns whether a step that is made now would change more than its number.
     [[nodiscard]] bool wouldChange(const sand::Replica& sand, bool edited);
-    void followRest(std::int64_t nowNs, bool changes);
+    [[nodiscard]] bool drawnAsResting(const sand::Replica& sand) const;
+    void followRest(std::int64_t nowNs, bool changes, const sand::Replica& sand);
 
     int stepsPerSecond_;
     haptic_bridge::Pace pace_;

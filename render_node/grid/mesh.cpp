@@ -11,10 +11,17 @@ namespace {
 
 constexpr int kGroup = 8;  // [chunk], side of a group
 
+int tilesFor(int cells) { return (cells + sand::kHashTile - 1) / sand::kHashTile; }
+
 }  // namespace
 
-GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun)
-    : surface_(data.field, data.ground), sun_(sun), layout_(surface_.columns(), surface_.rows()) {
+GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun, int stepsPerSecond)
+    : surface_(data.field, data.ground),
+      sun_(sun),
+      layout_(surface_.columns(), surface_.rows()),
+      sharpening_(stepsPerSecond, static_cast<std::size_t>(tilesFor(surface_.columns()) * tilesFor(surface_.rows()))),
+      tiles_{0, 0, tilesFor(surface_.columns()), tilesFor(surface_.rows())},
+      moving_(static_cast<std::size_t>(tiles_.x1 * tiles_.y1), 0) {
     makeChunks();
     makeGroups();
     ever_ = groups_.front().heights;
@@ -76,7 +83,8 @@ shapes::HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
 }
 
 bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const glm::dmat4>) {
-    const sand::HeightField& field = std::get<sand::GridData>(data).field;
+    const auto grid = std::get<sand::GridData>(data);
+    const sand::HeightField& field = grid.field;
     std::vector<shapes::GridVertices::Overwritten> overwritten;
     if (change.whole) {
         surface_.takeOver(field, field.bounds(), overwritten);
@@ -85,10 +93,12 @@ bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
             surface_.takeOver(field, cells, overwritten);
         }
     }
-    if (overwritten.empty()) {
+    const std::vector<int> others = grid.movement == nullptr ? std::vector<int>() : followMovement(*grid.movement);
+    if (overwritten.empty() && others.empty()) {
         return false;
     }
     ++revision_;
+    std::ranges::for_each(others, [this](int tile) { markMoving(tile); });
     bool rim = false;
     for (const sand::CellRect& cells : changedParts(overwritten)) {
         const sand::CellRect vertices = verticesOver(cells);
@@ -99,6 +109,58 @@ bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
         rim |= surface_.touchesRim(cells);
     }
     return rim;
+}
+
+std::vector<int> GridMesh::followMovement(const sand::Movement& movement) {
+    std::vector<int> others;
+    if (movingTiles_ == 0 && sharpening_.allSharp(movement)) {
+        return others;
+    }
+    std::vector<std::uint8_t> moving;
+    sharpening_.mark(movement, moving);
+    for (std::size_t tile = 0; tile < moving.size(); ++tile) {
+        if (moving[tile] != moving_[tile]) {
+            others.push_back(static_cast<int>(tile));
+        }
+    }
+    moving_ = std::move(moving);
+    movingTiles_ = std::ranges::count(moving_, 1);
+    return others;
+}
+
+/// Makes the chunks around a hash tile choose their levels again, because the tile began or ceased to count as moving.
+void GridMesh::markMoving(int tile) {
+    const int x0 = tile % tiles_.x1 * sand::kHashTile, y0 = tile / tiles_.x1 * sand::kHashTile;
+    const sand::CellRect cells = sand::CellRect{x0, y0, x0 + sand::kHashTile, y0 + sand::kHashTile}.clippedTo(
+        {0, 0, surface_.columns(), surface_.rows()});
+    const sand::CellRect chunks = chunksAround(verticesOver(cells));
+    for (int y = chunks.y0; y < chunks.y1; ++y) {
+        for (int x = chunks.x0; x < chunks.x1; ++x) {
+            Chunk& around = chunk(x, y);
+            if (const bool moving = dependsOnMoving(around.vertices); moving != around.moving) {
+                around.moving = moving;
+                around.revision = groupOf(x, y).revision = revision_;
+            }
+        }
+    }
+}
+
+/// Returns whether a hash tile that counts as moving has cells on which these vertices depend.
+bool GridMesh::dependsOnMoving(const sand::CellRect& vertices) const {
+    const sand::CellRect cells = surface_.cellsUnder(vertices.grownBy(shapes::GridVertices::kReach));
+    const sand::CellRect tiles{cells.x0 / sand::kHashTile, cells.y0 / sand::kHashTile, tilesFor(cells.x1),
+                               tilesFor(cells.y1)};
+    for (int y = tiles.y0; y < tiles.y1; ++y) {
+        const auto row = moving_.begin() + y * tiles_.x1;
+        if (std::find(row + tiles.x0, row + tiles.x1, 1) != row + tiles.x1) {
+            return true;
+        }
+    }
+    return false;
+}
+
+GridMesh::Group& GridMesh::groupOf(int x, int y) {
+    return groups_[static_cast<std::size_t>(y / kGroup * ((layout_.across + kGroup - 1) / kGroup) + x / kGroup)];
 }
 
 sand::CellRect GridMesh::chunksAround(const sand::CellRect& vertices) const {
@@ -115,14 +177,13 @@ void GridMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
             for (ChunkGeometry& geometry : changed.geometries) {
                 geometry.markStale(vertices);
             }
-            if (changed.revision == revision_) {
+            if (changed.marked == revision_) {
                 continue;  // another part of this update has marked it
             }
-            changed.revision = revision_;
+            changed.marked = changed.revision = revision_;
             changed.measured = false;
             changed.heights = heightsUnder(changed.vertices);
-            Group& group =
-                groups_[static_cast<std::size_t>(y / kGroup * ((layout_.across + kGroup - 1) / kGroup) + x / kGroup)];
+            Group& group = groupOf(x, y);
             group.revision = revision_;
             group.heights = around(group.heights, changed.heights);
         }

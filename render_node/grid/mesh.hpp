@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
 #include <map>
@@ -16,6 +18,7 @@
 #include "render_node/surface/drawn_surface.hpp"
 #include "shapes/grid/chunk_layout.hpp"
 #include "shapes/grid/hole_edges.hpp"
+#include "shapes/grid/sharpening.hpp"
 #include "shapes/grid/vertices.hpp"
 #include "shapes/model/box.hpp"
 
@@ -40,7 +43,7 @@ struct ChangedVertices {
 class GridMesh final : public DrawnSurface {
 public:
     /// `sun` points towards the sun and has length 1.
-    GridMesh(const sand::GridData& data, const glm::vec3& sun);
+    GridMesh(const sand::GridData& data, const glm::vec3& sun, int stepsPerSecond);
 
     [[nodiscard]] bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
                               std::span<const glm::dmat4> cameras) override;
@@ -50,6 +53,7 @@ public:
     [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) override;
     [[nodiscard]] std::vector<shapes::Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
                                                         const LevelRule& rule) override;
+    [[nodiscard]] bool moves() const override { return movingTiles_ > 0; }
     [[nodiscard]] std::uint64_t revision() const override { return revision_; }
     [[nodiscard]] shapes::HeightRange heightsEver() const override { return ever_; }
     [[nodiscard]] shapes::SandRim rim() const override { return surface_.rim(); }
@@ -66,7 +70,9 @@ private:
     struct Chunk {
         sand::CellRect vertices;  // of the vertex grid
         shapes::HeightRange heights;
-        std::uint64_t revision = 0;  // last revision that changed it
+        std::uint64_t marked = 0;    // last revision that changed its vertices
+        std::uint64_t revision = 0;  // last revision that changed its vertices or `moving`
+        bool moving = false;         // whether sand that it depends on counts as moving
         bool measured = false;       // `errors` belong to the current surface
         LevelErrors errors;
         std::uint64_t chosenFor = 0;  // value of choice_ for which `level` was chosen
@@ -94,11 +100,17 @@ private:
     [[nodiscard]] sand::CellRect verticesOver(const sand::CellRect& cells) const;
     [[nodiscard]] sand::CellRect chunksAround(const sand::CellRect& vertices) const;
     void markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices);
+    /// Returns the hash tiles that have begun or ceased to count as moving.
+    [[nodiscard]] std::vector<int> followMovement(const sand::Movement& movement);
+    void markMoving(int tile);
+    [[nodiscard]] bool dependsOnMoving(const sand::CellRect& vertices) const;
+    [[nodiscard]] Group& groupOf(int x, int y);
     [[nodiscard]] shapes::Box boxOf(const sand::CellRect& vertices, const shapes::HeightRange& heights) const;
     [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * layout_.across + x)]; }
     template <class Visit>  // void(int x, int y), with column and row of a chunk
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
     [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
+    [[nodiscard]] const LevelErrors& errorsOfChunk(Chunk& chunk, const LevelRule& rule) const;
     /// Returns the longest side of a triangle of any level along an axis [cell].
     [[nodiscard]] int longestStride() const { return 1 << layout_.coarsest; }
     [[nodiscard]] int strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const;
@@ -120,6 +132,10 @@ private:
     shapes::ChunkLayout layout_;
     std::vector<Chunk> chunks_;  // row by row from the south-west
     std::vector<Group> groups_;
+    shapes::Sharpening sharpening_;
+    sand::CellRect tiles_;                    // columns and rows of hash tiles
+    std::vector<std::uint8_t> moving_;        // 1 for each hash tile that counts as moving
+    std::ptrdiff_t movingTiles_ = 0;          // number of these
     std::map<ChunkLevels, Indices> indices_;  // each index has 16 bits
     std::size_t bytes_ = 0;
     std::uint64_t revision_ = 0;

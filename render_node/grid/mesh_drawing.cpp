@@ -40,14 +40,23 @@ int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
         return 0;
     }
     if (asked.chosenFor != choice_) {
-        if (!asked.measured && !rule.needsEveryCell()) {
-            asked.errors = errorsOf(surface_, asked.vertices, sun_, layout_.coarsest);
-            asked.measured = true;
+        const shapes::Box box = boxOf(asked.vertices, asked.heights);
+        std::optional<int> level;
+        if (asked.moving && rule.coarsensMovement()) {
+            level = rule.levelWhileMoving(box, double{surface_.cellSize()}, layout_.coarsest);
         }
-        asked.level = rule.level(boxOf(asked.vertices, asked.heights), asked.errors, layout_.coarsest);
+        asked.level = level ? *level : rule.level(box, errorsOfChunk(asked, rule), layout_.coarsest);
         asked.chosenFor = choice_;
     }
     return asked.level;
+}
+
+const LevelErrors& GridMesh::errorsOfChunk(Chunk& chunk, const LevelRule& rule) const {
+    if (!chunk.measured && !rule.needsEveryCell()) {
+        chunk.errors = errorsOf(surface_, chunk.vertices, sun_, layout_.coarsest);
+        chunk.measured = true;
+    }
+    return chunk.errors;
 }
 
 /// Returns the levels of a chunk and of its edges. The finer of two chunks determines their common edge. Edges at the

@@ -65,6 +65,8 @@ public:
     /// levels. Updates `levels`.
     [[nodiscard]] virtual std::vector<shapes::Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
                                                                 const LevelRule& rule) = 0;
+    /// Returns whether some sand counts as moving, so that LevelRule may draw it more coarsely than sand at rest.
+    [[nodiscard]] virtual bool moves() const { return false; }
     /// Returns the number of updates that changed something.
     [[nodiscard]] virtual std::uint64_t revision() const = 0;
     /// Returns the lowest and the highest height that any sand has ever had.

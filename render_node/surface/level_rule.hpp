@@ -3,6 +3,7 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "shapes/model/box.hpp"
 #include "shapes/model/levels.hpp"
@@ -24,14 +25,24 @@ class LevelRule {
 public:
     static constexpr double kLightPerPixel = 0.08;  // [1/pixel], share of the sun's full light: about 8 levels of 255
 
-    /// With `bound` 0 the rule chooses level 0 everywhere.
-    LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */);
+    static constexpr double kPixelsPerQuad = 4;  // of moving sand
+
+    /// With `bound` 0 the rule chooses level 0 everywhere. If `sharp`, moving sand gets the level of sand at rest.
+    LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */,
+              bool sharp = false);
+    /// Returns whether moving sand has a level of its own.
+    [[nodiscard]] bool coarsensMovement() const { return !sharp_ && !needsEveryCell(); }
     /// Returns whether the rule chooses level 0 whatever the errors are.
     [[nodiscard]] bool needsEveryCell() const { return bound_ <= 0; }
     /// Returns whether a box may reach into the picture.
     [[nodiscard]] bool sees(const shapes::Box& box) const { return shapes::inFrustum(box, sceneToClip_); }
     /// Returns the level for the sand within `box`, at most `coarsest`.
     [[nodiscard]] int level(const shapes::Box& box, const LevelErrors& errors, int coarsest) const;
+    /// Returns the level for moving sand within `box`, without a look at its errors: the finest level at which each
+    /// quad covers at least kPixelsPerQuad, as far as its slope does not shorten it, and at most `coarsest`. `cell` is
+    /// the side of a cell [scene unit]. Returns nullopt if the rule of resting sand must choose: if a part of the box
+    /// is behind the eye, or if the box is higher than it is wide, because a coarse level would leave out needles.
+    [[nodiscard]] std::optional<int> levelWhileMoving(const shapes::Box& box, double cell, int coarsest) const;
 
 private:
     [[nodiscard]] double pixelsPerUnit(const shapes::Box& box) const;
@@ -39,6 +50,7 @@ private:
     glm::dmat4 sceneToClip_;
     glm::dvec2 half_;  // [pixel], half of the picture's size
     double bound_;     // [pixel]
+    bool sharp_;
 };
 
 }  // namespace render_node

@@ -50,14 +50,16 @@ TEST(FrameMessage, CarriesEveryFieldOfAView) {
     EXPECT_EQ(base::decoded<lockstep::ViewState>(base::encoded(view)), view);
 }
 
-TEST(FrameMessage, TellsAStopFromACapture) {
-    for (const bool stop : {false, true}) {
+TEST(FrameMessage, TellsAStopFromACaptureAndBothFromASharpPicture) {
+    for (int flag = 0; flag < 3; ++flag) {
         lockstep::FrameMessage message = digging();
-        message.stop = stop;
-        message.capture = !stop;
+        message.stop = flag == 0;
+        message.capture = flag == 1;
+        message.sharp = flag == 2;
         const lockstep::FrameMessage copy = base::decoded<lockstep::FrameMessage>(base::encoded(message));
-        EXPECT_EQ(copy.stop, stop);
-        EXPECT_EQ(copy.capture, !stop);
+        EXPECT_EQ(copy.stop, flag == 0);
+        EXPECT_EQ(copy.capture, flag == 1);
+        EXPECT_EQ(copy.sharp, flag == 2);
     }
 }
 

@@ -167,17 +167,21 @@ TEST(Levels, AreThoseOfEveryTileOfAPlane) {
     int coarse = 0;
     for (int i = 0; i < 2000; ++i) {
         const glm::dvec3 low(random(source, 2), random(source, 2), 0);
+        const double cell = 0.002 + random(source, 0.01);
         render_node::LevelErrors errors;
         for (std::size_t level = 1; level < shapes::kLevels; ++level) {
             errors.height[level] = static_cast<float>(random(source, 1e-3)) + errors.height[level - 1];
         }
-        std::array<int, shapes::kLevels> asked{};
+        std::array<int, shapes::kLevels> asked{}, moving{};
         for (const walls::Tile& tile : wall.tiles) {
             const auto seen = walls::viewOf(tile.screen, wall.viewer.eye, wall.clip.near, wall.clip.far);
             const render_node::LevelRule rule(seen.viewProjection * sceneToRoom, tile.pixels, 0.5);
             ++asked.at(static_cast<std::size_t>(rule.level({low, low + 0.03}, errors, shapes::kLevels - 1)));
+            ++moving.at(static_cast<std::size_t>(
+                rule.levelWhileMoving({low, low + glm::dvec3(0.03, 0.03, 0.02)}, cell, shapes::kLevels - 1).value()));
         }
         EXPECT_EQ(*std::ranges::max_element(asked), static_cast<int>(wall.tiles.size())) << "box " << i;
+        EXPECT_EQ(*std::ranges::max_element(moving), static_cast<int>(wall.tiles.size())) << "box " << i;
         coarse += asked[0] == 0 ? 1 : 0;
     }
     EXPECT_GT(coarse, 200);

@@ -81,5 +81,54 @@ TEST(LevelRule, TheNearestPartOfABoxDecides) {
     EXPECT_EQ(rule.level(reachingBehind, errors, kCoarsest), 0) << "the camera is inside";
 }
 
+/// Returns a rule for a camera that looks straight down from far away. A cell of side 1 covers `pixels`.
+LevelRule fromAbove(double pixels, bool sharp = false, double bound = 0.5) {
+    glm::dmat4 sceneToClip(1);
+    sceneToClip[0] = {std::sqrt(pixels) / 50, 0, 0, 0};
+    sceneToClip[1] = {0, std::sqrt(pixels) / 50, 0, 0};
+    sceneToClip[2] = {0, 0, -1e-9, 0};
+    return {sceneToClip, {100, 100}, bound, sharp};
+}
+
+TEST(LevelRule, MovingSandHasQuadsOfAtLeastFourPixels) {
+    for (const auto& [pixels, level] : {std::pair{4.01, 0}, {3.99, 1}, {1.01, 1}, {0.99, 2}, {0.251, 2}, {0.01, 4}}) {
+        EXPECT_EQ(fromAbove(pixels).levelWhileMoving(kBox, 1, kCoarsest), level) << pixels;
+        EXPECT_EQ(fromAbove(4 * pixels).levelWhileMoving(kBox, 0.5, kCoarsest), level) << "of half a cell, " << pixels;
+    }
+    EXPECT_EQ(fromAbove(0.01).levelWhileMoving(kBox, 1, 2), 2) << "no level is coarser than allowed";
+    EXPECT_TRUE(fromAbove(1).coarsensMovement());
+    EXPECT_FALSE(fromAbove(1, true).coarsensMovement());
+    EXPECT_FALSE(fromAbove(1, false, 0).coarsensMovement()) << "every cell is drawn";
+}
+
+TEST(LevelRule, NeedlesAndSandAroundTheEyeAreMeasuredAlthoughTheyMove) {
+    const Box needle{{-1, -1, -1}, {1, 1, 1.01}};
+    EXPECT_EQ(fromAbove(1).levelWhileMoving(needle, 1, kCoarsest), std::nullopt);
+    glm::dmat4 perspective(0);
+    perspective[0] = {1, 0, 0, 0};
+    perspective[1] = {0, 0, 1, 1};
+    perspective[2] = {0, 1, 0, 0};
+    perspective[3] = {0, 0, 0, 10};
+    const LevelRule rule(perspective, {100, 100}, 0.5);
+    EXPECT_NE(rule.levelWhileMoving(kBox, 1, kCoarsest), std::nullopt);
+    const Box reachingBehind{{-1, -11, -1}, {1, 1, 1}};
+    EXPECT_EQ(rule.levelWhileMoving(reachingBehind, 1, kCoarsest), std::nullopt);
+}
+
+// The camera of above is 10 units from the middle of the box, and looks along its ground. A level quad at height h,
+// y units away, is h / y^3 * 50 * 50 pixels large. The corner at height 1 that is 9 units away decides: 3.43 pixels.
+TEST(LevelRule, TheLargestQuadOfMovingSandDecides) {
+    glm::dmat4 perspective(0);
+    perspective[0] = {1, 0, 0, 0};
+    perspective[1] = {0, 0, 1, 1};
+    perspective[2] = {0, 1, 0, 0};
+    perspective[3] = {0, 0, 0, 10};
+    const LevelRule rule(perspective, {100, 100}, 0.5);
+    EXPECT_EQ(rule.levelWhileMoving(kBox, 1, kCoarsest), 1);
+    EXPECT_EQ(rule.levelWhileMoving(kBox, 1.09, kCoarsest), 0);
+    EXPECT_EQ(rule.levelWhileMoving(kBox, 1.07, kCoarsest), 1);
+    EXPECT_EQ(rule.levelWhileMoving({{-1, -1, -0.1}, {1, 1, 0.1}}, 1, kCoarsest), 2);
+}
+
 }  // namespace
 }  // namespace level_rules
