@@ -246,7 +246,8 @@ PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& tar
 
 LevelRule ScenePainter::ruleFor(const Camera& camera, glm::ivec2 size) const {
     // With flat shading the size of the triangles is visible, so that all chunks have level 0.
-    return {camera.roomToClip * shown_.sceneToRoom, size, look_.flatShading ? 0 : look_.detail, shown_.sharp};
+    return {camera.roomToClip * shown_.sceneToRoom, size, look_.flatShading ? 0 : look_.detail,
+            shown_.sharp ? 0 : pixelsPerQuad_};
 }
 
 }  // namespace render_node

@@ -92,6 +92,11 @@ public:
     /// Sets the largest distance by which the level of detail may shift the picture of any sand [pixel]. It replaces
     /// the scene's look.detail. The caller must reset EyeMemory::drawn of its memories.
     void setDetail(double bound) { look_.detail = bound; }
+    /// Sets the least area of the quads of moving sand [pixel], for measurements. It replaces
+    /// LevelRule::kPixelsPerQuad. The caller must reset EyeMemory::drawn of its memories.
+    void setPixelsPerQuad(double pixels) { pixelsPerQuad_ = pixels; }
+    /// Returns the work of all drawing so far. For measurements.
+    [[nodiscard]] DrawnSurface::Work work() const { return surface_->work(); }
 
 private:
     /// Drawing of one rectangle of a picture.
@@ -127,6 +132,7 @@ private:
     double usualScale_;  // [m per scene unit], of the usual view
     sand::Tool tool_;
     ShownScene shown_;
+    double pixelsPerQuad_ = LevelRule::kPixelsPerQuad;
     bool culling_ = true;
     DrawCounts counts_;
     std::unique_ptr<DrawnSurface> surface_;

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/draw/moving_sand.hpp"
 #include "bench/report/timing.hpp"
 #include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
@@ -30,6 +31,11 @@ struct Options {
     int frames = 120;
     int rate = 30;  // [frame/s]
     bool json = false;
+    bench::MovingSandOptions moving{.wall = "walls/configs/desktop.toml",
+                                    .row = {},
+                                    .frames = 0,
+                                    .pixelsPerQuad = {static_cast<int>(render_node::LevelRule::kPixelsPerQuad)},
+                                    .folder = {}};
 };
 
 /// A tile with the view and the eyes that its rank has.
@@ -209,5 +215,18 @@ int main(int argc, char** argv) {
     line.option("--frames", options.frames, "number of frames").range(1, 100000).showDefault();
     line.option("--rate", options.rate, "frames per second of the wall").range(1, 1000).showDefault();
     line.flag("--json", options.json, "print medians per frame as an object: step_ms, busiest_tile_ms, update_ms, …");
-    return host::runMain(line, argc, argv, [&] { return measure(options); });
+    line.option("--moving", options.moving.row, "measure moving sand instead, on --wall or on desktop.toml: a row")
+        .oneOf(bench::movingSandRows());
+    line.option("--pixels", options.moving.pixelsPerQuad, "with --moving: least pixels of a quad, separated by commas")
+        .commaSeparated();
+    line.flag("--errors", options.moving.errors, "with --moving: compare with pictures of every cell");
+    line.option("--write", options.moving.folder, "with --moving: folder for the frames, as a window shows them");
+    return host::runMain(line, argc, argv, [&] {
+        if (options.moving.row.empty()) {
+            return measure(options);
+        }
+        options.moving.frames = options.frames;
+        bench::measureMovingSand(options.moving);
+        return 0;
+    });
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace render_node {
@@ -40,42 +41,54 @@ bool ChunkGeometry::lacksVerticesOf(const ChunkLevels& levels) const {
     return lacks;
 }
 
-void ChunkGeometry::refresh(const shapes::GridVertices& surface, const ChunkLevels& levels,
-                            const shapes::HoleEdges* holes) {
+std::size_t ChunkGeometry::refresh(const shapes::GridVertices& surface, const ChunkLevels& levels,
+                                   const shapes::HoleEdges* holes) {
     if (stale_.empty() && !lacksVerticesOf(levels)) {
-        return;
+        return 0;
     }
+    const sand::CellRect stale = std::exchange(stale_, {});
     if (levels.level > 0 || bytes_ == 0 || holes != nullptr) {
-        sendAll(surface, levels, holes);
-    } else {
-        glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
-        std::vector<shapes::GridVertex> row(static_cast<std::size_t>(stale_.x1 - stale_.x0));
-        const int across = vertices_.x1 - vertices_.x0;
-        for (int y = stale_.y0; y < stale_.y1; ++y) {
-            surface.vertices(stale_.x0, y, row);
-            const int first = (y - vertices_.y0) * across + stale_.x0 - vertices_.x0;
-            glBufferSubData(GL_ARRAY_BUFFER, bytesOf(static_cast<std::size_t>(first)), bytesOf(row.size()), row.data());
-        }
+        return sendAll(surface, levels, holes);
     }
-    stale_ = {};
+    glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
+    std::vector<shapes::GridVertex> row(static_cast<std::size_t>(stale.x1 - stale.x0));
+    const int across = vertices_.x1 - vertices_.x0;
+    for (int y = stale.y0; y < stale.y1; ++y) {
+        surface.vertices(stale.x0, y, row);
+        const int first = (y - vertices_.y0) * across + stale.x0 - vertices_.x0;
+        glBufferSubData(GL_ARRAY_BUFFER, bytesOf(static_cast<std::size_t>(first)), bytesOf(row.size()), row.data());
+    }
+    return row.size() * static_cast<std::size_t>(stale.y1 - stale.y0);
 }
 
-void ChunkGeometry::sendAll(const shapes::GridVertices& surface, const ChunkLevels& levels,
-                            const shapes::HoleEdges* holes) {
+void ChunkGeometry::bind(GLuint indices) {
+    glBindVertexArray(array_.id());
+    if (indices_ != indices) {  // the vertex array keeps it
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
+        indices_ = indices;
+    }
+}
+
+std::size_t ChunkGeometry::sendAll(const shapes::GridVertices& surface, const ChunkLevels& levels,
+                                   const shapes::HoleEdges* holes) {
     std::vector<shapes::GridVertex> vertices = verticesOf(surface, vertices_, levels);
     sent_ = levels;
     if (holes != nullptr) {
         const std::vector<shapes::GridVertex> added = holes->added(vertices);
         vertices.insert(vertices.end(), added.begin(), added.end());
     }
-    const bool first = bytes_ == 0;
-    bytes_ = vertices.size() * sizeof(shapes::GridVertex);
-    glBindVertexArray(array_.id());
+    const std::size_t before = std::exchange(bytes_, vertices.size() * sizeof(shapes::GridVertex));
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
+    if (before == bytes_) {
+        glBufferSubData(GL_ARRAY_BUFFER, 0, bytesOf(vertices.size()), vertices.data());
+        return computedVertices(vertices_, levels);
+    }
     glBufferData(GL_ARRAY_BUFFER, bytesOf(vertices.size()), vertices.data(), GL_DYNAMIC_DRAW);
-    if (first) {
+    if (before == 0) {
+        glBindVertexArray(array_.id());
         describeVertex();
     }
+    return computedVertices(vertices_, levels);
 }
 
 }  // namespace render_node

@@ -125,7 +125,11 @@ std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface, 
         }
     }
     const glm::ivec2 quads(vertices.x1 - vertices.x0 - 1, vertices.y1 - vertices.y0 - 1);
-    for (std::size_t edge = 0; edge < 4; ++edge) {
+    std::size_t finer = levels.edges.size();  // edges up to the last one that is finer than the chunk
+    while (finer > 0 && levels.edges[finer - 1] == levels.level) {
+        --finer;
+    }
+    for (std::size_t edge = 0; edge < finer; ++edge) {
         const std::size_t first = out.size();
         const int length = lengthOf(quads, edge), outerStride = 1 << levels.edges[edge];
         out.resize(first + static_cast<std::size_t>(length) + 1);
@@ -138,6 +142,15 @@ std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface, 
         }
     }
     return out;
+}
+
+std::size_t computedVertices(const sand::CellRect& vertices, const ChunkLevels& levels) {
+    const glm::ivec2 quads(vertices.x1 - vertices.x0 - 1, vertices.y1 - vertices.y0 - 1);
+    int count = ((quads.x >> levels.level) + 1) * ((quads.y >> levels.level) + 1);
+    for (std::size_t edge = 0; edge < 4; ++edge) {
+        count += (lengthOf(quads, edge) >> levels.edges[edge]) - (lengthOf(quads, edge) >> levels.level);
+    }
+    return static_cast<std::size_t>(count);
 }
 
 std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const ChunkLevels& levels) {

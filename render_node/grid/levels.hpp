@@ -27,10 +27,13 @@ struct ChunkLevels {
 };
 
 /// Returns the vertices of a chunk of side × side quads. The vertices of the level's grid come first, row by row from
-/// the south-west. Above level 0 the four edges follow, counter-clockwise. They have a place for every vertex, but only
-/// those that an edge finer than the chunk needs are computed. All others are 0.
+/// the south-west. Above level 0 the four edges follow, counter-clockwise, up to the last one that is finer than the
+/// chunk. They have a place for every vertex, but only those that a finer edge needs are computed. All others are 0.
 [[nodiscard]] std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface,
                                                          const sand::CellRect& vertices, const ChunkLevels& levels);
+
+/// Returns how many of these vertices are computed.
+[[nodiscard]] std::size_t computedVertices(const sand::CellRect& vertices, const ChunkLevels& levels);
 
 /// Returns the triangles of a chunk as indices into verticesOf(), counter-clockwise from above. They use the vertices
 /// of a chunk with these levels, or with finer edges. Neighbours that agree on the level of their common edge use the

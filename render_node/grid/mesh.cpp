@@ -105,10 +105,27 @@ bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
         const shapes::HeightRange heights = heightsAround(vertices, overwritten);
         changes_.add(revision_, {vertices, heights});
         ever_ = around(ever_, heights);
-        markChanged(chunksAround(vertices), vertices);
         rim |= surface_.touchesRim(cells);
     }
+    for (const sand::CellRect& cells : changedTiles(overwritten)) {
+        markChanged(chunksAround(verticesOver(cells)), verticesOver(cells));
+    }
     return rim;
+}
+
+/// Returns the cells that have changed in each hash tile with changes. They are closer to the sand than changedParts(),
+/// so that few chunks are computed although they look as before.
+std::vector<sand::CellRect> GridMesh::changedTiles(
+    std::span<const shapes::GridVertices::Overwritten> overwritten) const {
+    static_assert(sand::kHashTile % shapes::GridVertices::kBlock == 0);
+    std::vector<sand::CellRect> tiles(moving_.size());
+    for (const auto& [cells, before] : overwritten) {
+        sand::CellRect& tile =
+            tiles[static_cast<std::size_t>(cells.y0 / sand::kHashTile * tiles_.x1 + cells.x0 / sand::kHashTile)];
+        tile = tile.joinedWith(cells);
+    }
+    std::erase_if(tiles, [](const sand::CellRect& cells) { return cells.empty(); });
+    return tiles;
 }
 
 std::vector<int> GridMesh::followMovement(const sand::Movement& movement) {

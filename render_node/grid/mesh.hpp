@@ -60,6 +60,7 @@ public:
     [[nodiscard]] int chunks() const override { return static_cast<int>(chunks_.size()); }
     [[nodiscard]] std::size_t bytes() const override { return bytes_; }
     [[nodiscard]] std::int64_t placesRead() const override { return surface_.placesRead(); }
+    [[nodiscard]] Work work() const override { return work_; }
 
 private:
     struct Indices {
@@ -99,6 +100,8 @@ private:
         const sand::CellRect& vertices, std::span<const shapes::GridVertices::Overwritten> overwritten) const;
     [[nodiscard]] sand::CellRect verticesOver(const sand::CellRect& cells) const;
     [[nodiscard]] sand::CellRect chunksAround(const sand::CellRect& vertices) const;
+    [[nodiscard]] std::vector<sand::CellRect> changedTiles(
+        std::span<const shapes::GridVertices::Overwritten> overwritten) const;
     void markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices);
     /// Returns the hash tiles that have begun or ceased to count as moving.
     [[nodiscard]] std::vector<int> followMovement(const sand::Movement& movement);
@@ -110,7 +113,7 @@ private:
     template <class Visit>  // void(int x, int y), with column and row of a chunk
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
     [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
-    [[nodiscard]] const LevelErrors& errorsOfChunk(Chunk& chunk, const LevelRule& rule) const;
+    [[nodiscard]] const LevelErrors& errorsOfChunk(Chunk& chunk, const LevelRule& rule);
     /// Returns the longest side of a triangle of any level along an axis [cell].
     [[nodiscard]] int longestStride() const { return 1 << layout_.coarsest; }
     [[nodiscard]] int strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const;
@@ -142,6 +145,7 @@ private:
     std::uint64_t choice_ = 0;  // number of the current choice of levels; levels are chosen again after it changes
     ChangeHistory<ChangedVertices> changes_;
     TrianglePace pace_;
+    Work work_;
     shapes::HeightRange ever_;
 };
 

@@ -51,10 +51,11 @@ int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
     return asked.level;
 }
 
-const LevelErrors& GridMesh::errorsOfChunk(Chunk& chunk, const LevelRule& rule) const {
+const LevelErrors& GridMesh::errorsOfChunk(Chunk& chunk, const LevelRule& rule) {
     if (!chunk.measured && !rule.needsEveryCell()) {
         chunk.errors = errorsOf(surface_, chunk.vertices, sun_, layout_.coarsest);
         chunk.measured = true;
+        ++work_.measuredChunks;
     }
     return chunk.errors;
 }
@@ -99,7 +100,8 @@ ChunkGeometry& GridMesh::geometryOf(Chunk& chunk, const ChunkLevels& levels) {
         found = chunk.geometries.emplace(found, chunk.vertices, levels.level);
     }
     const std::size_t before = found->bytes();
-    found->refresh(surface_, levels, chunk.holes ? &*chunk.holes : nullptr);
+    work_.vertices +=
+        static_cast<std::int64_t>(found->refresh(surface_, levels, chunk.holes ? &*chunk.holes : nullptr));
     bytes_ += found->bytes() - before;
     found->used = choice_;
     return *found;
@@ -154,12 +156,11 @@ GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
     visitSeen(sceneToClip, culling, [&](int x, int y) {
         const ChunkLevels levels = levelsOf(x, y, rule);
         const Indices& indices = indicesOf(chunk(x, y), levels);
-        const ChunkGeometry& geometry = geometryOf(chunk(x, y), levels);
+        ChunkGeometry& geometry = geometryOf(chunk(x, y), levels);
         if (before) {
             before(boxOf(chunk(x, y).vertices, chunk(x, y).heights));
         }
-        glBindVertexArray(geometry.array());
-        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.buffer.id());
+        geometry.bind(indices.buffer.id());
         const int triangles = drawTriangles(chunk(x, y), indices, culling ? &sceneToClip : nullptr);
         ++drawn.chunks;
         drawn.coarseChunks += levels.level > 0 ? 1 : 0;

@@ -31,6 +31,12 @@ public:
         int triangles = 0;
     };
 
+    /// Work since the surface was made. For measurements.
+    struct Work {
+        std::int64_t vertices = 0;        // computed and sent to GL
+        std::int64_t measuredChunks = 0;  // whose errors were computed at all levels
+    };
+
     DrawnSurface() = default;
     DrawnSurface(const DrawnSurface&) = delete;
     DrawnSurface& operator=(const DrawnSurface&) = delete;
@@ -79,6 +85,8 @@ public:
     [[nodiscard]] virtual std::size_t bytes() const = 0;
     /// Returns the number of heights that updates have read, or of vertices and triangles of a TIN. For measurements.
     [[nodiscard]] virtual std::int64_t placesRead() const = 0;
+    /// Returns the work so far; nothing for a TIN.
+    [[nodiscard]] virtual Work work() const { return {}; }
 };
 
 }  // namespace render_node

@@ -6,8 +6,8 @@
 
 namespace render_node {
 
-LevelRule::LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size, double bound, bool sharp)
-    : sceneToClip_(sceneToClip), half_(glm::dvec2(size) / 2.0), bound_(bound), sharp_(sharp) {}
+LevelRule::LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size, double bound, double pixelsPerQuad)
+    : sceneToClip_(sceneToClip), half_(glm::dvec2(size) / 2.0), bound_(bound), pixelsPerQuad_(pixelsPerQuad) {}
 
 /// Returns the largest distance that a point's picture moves when the point moves up by one scene unit [pixel].
 ///
@@ -28,10 +28,6 @@ double LevelRule::pixelsPerUnit(const shapes::Box& box) const {
 /// The area of a small level quad at a point is a determinant, divided by the third power of w. As in pixelsPerUnit(),
 /// all tiles of a plane get the same value.
 std::optional<int> LevelRule::levelWhileMoving(const shapes::Box& box, double cell, int coarsest) const {
-    const glm::dvec3 size = box.high - box.low;
-    if (size.z > std::max(size.x, size.y)) {
-        return std::nullopt;
-    }
     const auto flat = [](const glm::dvec4& clip) { return glm::dvec3(clip.x, clip.y, clip.w); };
     const glm::dvec3 normal = glm::cross(flat(sceneToClip_[0]), flat(sceneToClip_[1]));
     double largest = 0;  // [pixel], of a quad of level 0
@@ -44,7 +40,7 @@ std::optional<int> LevelRule::levelWhileMoving(const shapes::Box& box, double ce
         largest = std::max(largest, area);
     }
     int level = 0;
-    while (level < coarsest && std::ldexp(largest, 2 * level) < kPixelsPerQuad) {
+    while (level < coarsest && std::ldexp(largest, 2 * level) < pixelsPerQuad_) {
         ++level;
     }
     return level;

@@ -27,11 +27,12 @@ public:
 
     static constexpr double kPixelsPerQuad = 4;  // of moving sand
 
-    /// With `bound` 0 the rule chooses level 0 everywhere. If `sharp`, moving sand gets the level of sand at rest.
+    /// With `bound` 0 the rule chooses level 0 everywhere. With `pixelsPerQuad` 0, moving sand gets the level of sand
+    /// at rest.
     LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */,
-              bool sharp = false);
+              double pixelsPerQuad = kPixelsPerQuad);
     /// Returns whether moving sand has a level of its own.
-    [[nodiscard]] bool coarsensMovement() const { return !sharp_ && !needsEveryCell(); }
+    [[nodiscard]] bool coarsensMovement() const { return pixelsPerQuad_ > 0 && !needsEveryCell(); }
     /// Returns whether the rule chooses level 0 whatever the errors are.
     [[nodiscard]] bool needsEveryCell() const { return bound_ <= 0; }
     /// Returns whether a box may reach into the picture.
@@ -39,9 +40,9 @@ public:
     /// Returns the level for the sand within `box`, at most `coarsest`.
     [[nodiscard]] int level(const shapes::Box& box, const LevelErrors& errors, int coarsest) const;
     /// Returns the level for moving sand within `box`, without a look at its errors: the finest level at which each
-    /// quad covers at least kPixelsPerQuad, as far as its slope does not shorten it, and at most `coarsest`. `cell` is
-    /// the side of a cell [scene unit]. Returns nullopt if the rule of resting sand must choose: if a part of the box
-    /// is behind the eye, or if the box is higher than it is wide, because a coarse level would leave out needles.
+    /// quad covers at least `pixelsPerQuad`, as far as its slope does not shorten it, and at most `coarsest`. `cell` is
+    /// the side of a cell [scene unit]. Returns nullopt if a part of the box is behind
+    /// the eye, so that the rule of resting sand must choose.
     [[nodiscard]] std::optional<int> levelWhileMoving(const shapes::Box& box, double cell, int coarsest) const;
 
 private:
@@ -50,7 +51,7 @@ private:
     glm::dmat4 sceneToClip_;
     glm::dvec2 half_;  // [pixel], half of the picture's size
     double bound_;     // [pixel]
-    bool sharp_;
+    double pixelsPerQuad_;
 };
 
 }  // namespace render_node

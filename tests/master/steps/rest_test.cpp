@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 
 #include "tests/master/steps/live_steps_fixture.hpp"
 
@@ -70,6 +71,29 @@ TEST_F(RestTest, NoStepIsDueAfterTheSandHasRestedForASecond) {
     EXPECT_TRUE(live.rests());
     EXPECT_EQ(showFrames(live, 36'000), 0U) << "ten minutes";
     EXPECT_EQ(wall_.stepNumber(), 61U);
+}
+
+// 960 hash tiles count as moving for 30 steps, and 16 of them are sharpened in each step after these. The first step
+// after the movement sharpens the first tiles.
+TEST_F(RestTest, ALargeFieldGetsStepsUntilAllOfItIsDrawnAsAtRest) {
+    const scene::Scene large = samples::flatScene(1024, 960);
+    wall_ = sand::Replica(large);
+    sand::StateCopy moved = wall_.copyState();
+    sand::Movement movement = *wall_.surface().movement();
+    movement.step = 1;
+    std::ranges::fill(movement.moved, 1);
+    base::ByteWriter numbers, head;
+    movement.encode(numbers);
+    moved.movement = numbers.take();
+    std::memcpy(moved.head.data() + sizeof sand::kStateVersion, &movement.step, sizeof movement.step);
+    wall_.decodeState(moved.encode());
+    master::LiveSteps live(
+        {}, large, asked_, Pace::realtime, 0, {}, [this] { return nowNs_.load(); }, master::AtRest::makesNone);
+    for (int frame = 0; frame < 600 && !live.rests(); ++frame) {
+        showFrames(live, 1);
+    }
+    EXPECT_EQ(wall_.stepNumber(), 1U + 30 + 960 / 16 - 1);
+    EXPECT_EQ(showFrames(live, 600), 0U);
 }
 
 TEST_F(RestTest, ASessionOfCountedStepsAndAFastOneMakeThemAll) {
