@@ -28,6 +28,7 @@ namespace {
 
 constexpr int kBadLevel = 8;  // [of 255]
 constexpr int kWarmUp = 3;    // [frame]
+constexpr int kStops = 13;    // [frame], in which all sand of some rows stops
 
 std::int32_t thresholdOf(double talusDegrees) {
     return static_cast<std::int32_t>(std::tan(talusDegrees * std::numbers::pi / 180) * sand::kUnitsPerCell);
@@ -55,7 +56,7 @@ scene::Scene furrowOf(int side) {
 
 /// Returns a level field with a plateau of the greatest height from one column to another.
 scene::Scene plateauOf(int side, int from, int end, int rows) {
-    scene::Scene scene = fieldOf(side, 34, 16);
+    scene::Scene scene = fieldOf(side, 34, 1);
     for (int y = (side - rows) / 2; y < (side + rows) / 2; ++y) {
         for (int x = from; x < end; ++x) {
             scene.terrain.setHeight(x, y, sand::kMaxHeight / 2);
@@ -79,10 +80,10 @@ sand::Step digging(const sand::Replica& replica) {
     return step;
 }
 
-/// Returns a step that makes all sand rest from the frame `frame` on.
-sand::Step stopping(const sand::Replica& replica, int frame, int stop) {
+/// Returns a step. That of frame kStops makes all sand rest.
+sand::Step stopping(const sand::Replica& replica, int frame) {
     sand::Step step = stepAfter(replica);
-    if (frame == stop) {
+    if (frame == kStops) {
         sand::Tuning tuning = replica.rules().tuning;
         tuning.threshold = tuning.startThreshold = thresholdOf(80);
         step.edit = sand::Edit::tuned(tuning);
@@ -95,17 +96,17 @@ struct Row {
     std::function<scene::Scene()> scene;
     std::function<sand::Step(const sand::Replica&, int frame)> step;
     bool headMoves = false;
+    bool stops = false;
 };
 
 std::vector<Row> rows() {
     const auto slide = [](const sand::Replica& replica, int) { return stepAfter(replica); };
     const auto dig = [](const sand::Replica& replica, int) { return digging(replica); };
-    const auto rest = [](const sand::Replica& replica, int frame) { return stopping(replica, frame, 10); };
     return {{"dunes-4096", [] { return dunesOf(4096, 12); }, slide},
             {"dunes-2048", [] { return dunesOf(2048, 12); }, slide},
             {"furrow-4096", [] { return furrowOf(4096); }, dig},
-            {"rest-4096", [] { return dunesOf(4096, 12); }, rest},
-            {"rest-2048", [] { return dunesOf(2048, 12); }, rest},
+            {"rest-4096", [] { return dunesOf(4096, 12); }, stopping, false, true},
+            {"rest-2048", [] { return dunesOf(2048, 12); }, stopping, false, true},
             {"head-2048", [] { return dunesOf(2048, 80); }, slide, true},
             {"cliff-1024", [] { return plateauOf(1024, 0, 512, 1024); }, slide},
             {"needle-1024", [] { return plateauOf(1024, 511, 512, 1); }, slide}};
@@ -241,6 +242,13 @@ private:
         };
         std::ranges::for_each(rules_, [&](const auto& rule) { print(*rule); });
         fmt::print("whole picture of this sand at rest: {:.2f} ms\n", wholeAtRest());
+        if (row_.stops) {
+            constexpr std::ptrdiff_t kMoving = kStops - kWarmUp;
+            const std::vector<double>& ms = rules_.front()->ms;
+            const std::vector<double> moving(ms.begin(), ms.begin() + kMoving), resting(ms.begin() + kMoving, ms.end());
+            fmt::print("frames while sand moves: median {:.2f} ms; longest frame after that: {:.2f} ms, ratio {:.2f}\n",
+                       quantile(moving, 0.5), quantile(resting, 1), quantile(resting, 1) / quantile(moving, 0.5));
+        }
     }
 
     /// Returns the median time of a whole picture of the last sand, as it is drawn at rest [ms].

@@ -53,7 +53,7 @@ public:
     [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) override;
     [[nodiscard]] std::vector<shapes::Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
                                                         const LevelRule& rule) override;
-    [[nodiscard]] bool moves() const override { return movingTiles_ > 0; }
+    [[nodiscard]] bool moves() const override { return movingTiles_ > 0 && layout_.coarsest > 0; }
     [[nodiscard]] std::uint64_t revision() const override { return revision_; }
     [[nodiscard]] shapes::HeightRange heightsEver() const override { return ever_; }
     [[nodiscard]] shapes::SandRim rim() const override { return surface_.rim(); }

@@ -37,6 +37,22 @@ TEST_F(Lockstep, OneFourAndTwelveRanksOfAnyThreadsHashLikeTheirJournal) {
     }
 }
 
+// The hand digs until the end, so that sand moves in the last frame. Its picture, which stays, is drawn whole with
+// other levels. All frames between it and the first one are drawn in part.
+TEST_F(Lockstep, TheLastFrameDrawsMovingSandAsFinelyAsSandAtRest) {
+    const std::string large = write("large.toml",
+                                    "name = \"large\"\n[field]\ncolumns = 256\nrows = 256\n[terrain]\nheight = "
+                                    "0.2\n[material]\n[tool]\nradius = 0.04\n");
+    for (const auto& [what, sand] : {std::pair{"256 columns have two levels", large}, {"128 have one", scene()}}) {
+        const Ended ended = runToEnd({"--wall", wall(1, 1), "--scene", sand, "--device", "script:gis", "--pace", "fast",
+                                      "--steps", "80", "--out", out(), "--no-pictures"});
+        ASSERT_EQ(ended.status, 0) << ended.output;
+        const nlohmann::json views = summary()["per_rank"][0]["views"];
+        EXPECT_EQ(views["whole"], sand == large ? 4 : 2) << what << ", two eyes: " << views;
+        EXPECT_GT(views["in_part"], 5) << views;
+    }
+}
+
 // The commands are typed at the launcher. There is no hand, so the master numbers the steps. control_test.cpp tests
 // commands with a hand.
 TEST_F(Lockstep, AnOperatorSettlesTheSandOnEveryReplica) {
