@@ -80,7 +80,7 @@ struct TileValues {
 struct Vote {
     int rank = 0;      // first rank of the largest group; the master's rank if its group is as large as any other
     int agreeing = 0;  // number of ranks of this group
-    bool tie = false;  // at most half of all ranks belong to it, so that it is no majority
+    bool tie = false;  // whether at most half of all ranks belong to it
 };
 /// Counts how many ranks have the same state hash and movement.
 [[nodiscard]] Vote countVotes(const std::vector<Account>& accounts /* in order of rank, the master's first */);

@@ -65,8 +65,8 @@ class FaultsOfRank {
 public:
     FaultsOfRank(const std::vector<Fault>& all, int rank);
 
-    /// Injects the faults at the beginning of frame `frame`: ends the process, never returns, or flips a bit of the
-    /// sand or of its movement without updating the hash.
+    /// Injects the faults at the beginning of frame `frame`: ends the process, or never returns. Or flips a bit of
+    /// the sand or of its movement, and does not update the hash.
     void strike(std::uint64_t frame, sand::Replica& replica) const;
     /// Sleeps after frame `frame` has been drawn, if a fault makes it slow. A sleep leaves the cores free, as a slow
     /// graphics card does.

@@ -314,7 +314,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     const auto head = base::read<StateHead>(reader);
     const bool grid = surface_->movement() != nullptr;
     const std::size_t tiles = grid ? static_cast<std::size_t>(hashTiles().tileCount()) : 0;
-    Movement movement = Movement::decode(reader.getBlock(), head.number, tiles);
+    const Movement movement = Movement::decode(reader.getBlock(), head.number, tiles);
     const auto beforeStroke = reader.getBlock();
     const SurfaceReader read = surface_->reader();
     // Decode the kept sand now, because at the undo it would be too late to refuse it.
@@ -330,7 +330,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     surface_->changeRules(rules_);
     surface_->replace(*sand);
     (void)surface_->hash();  // so that the next step does not count as the one that changed this sand
-    surface_->resumeMovement(std::move(movement));
+    surface_->resumeMovement(movement);
     stepNumber_ = head.number;
     engaged_ = head.engaged;
     owed_ = head.owed;

@@ -255,12 +255,12 @@ private:
     [[nodiscard]] double wholeAtRest() {
         Ruled& rule = *rules_.back();
         const render_node::Camera camera = cameraAt(kWarmUp + options_.frames - 1);
-        std::vector<double> ms;
-        for (int i = 0; i < 5; ++i) {
-            ms.push_back(1e3 * secondsOf([&] {
-                             rule.view.draw(camera, rule.target);
-                             rule.target.finish();
-                         }));
+        std::vector<double> ms(5);
+        for (double& one : ms) {
+            one = 1e3 * secondsOf([&] {
+                      rule.view.draw(camera, rule.target);
+                      rule.target.finish();
+                  });
         }
         return quantile(ms, 0.5);
     }

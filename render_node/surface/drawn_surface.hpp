@@ -85,7 +85,7 @@ public:
     [[nodiscard]] virtual std::size_t bytes() const = 0;
     /// Returns the number of heights that updates have read, or of vertices and triangles of a TIN. For measurements.
     [[nodiscard]] virtual std::int64_t placesRead() const = 0;
-    /// Returns the work so far; nothing for a TIN.
+    /// Returns the work so far. A TIN does not count it.
     [[nodiscard]] virtual Work work() const { return {}; }
 };
 

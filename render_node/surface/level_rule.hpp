@@ -39,10 +39,9 @@ public:
     [[nodiscard]] bool sees(const shapes::Box& box) const { return shapes::inFrustum(box, sceneToClip_); }
     /// Returns the level for the sand within `box`, at most `coarsest`.
     [[nodiscard]] int level(const shapes::Box& box, const LevelErrors& errors, int coarsest) const;
-    /// Returns the level for moving sand within `box`, without a look at its errors: the finest level at which each
-    /// quad covers at least `pixelsPerQuad`, as far as its slope does not shorten it, and at most `coarsest`. `cell` is
-    /// the side of a cell [scene unit]. Returns nullopt if a part of the box is behind
-    /// the eye, so that the rule of resting sand must choose.
+    /// Returns the level for moving sand within `box`, at most `coarsest`. It is the finest level at which a level quad
+    /// covers at least `pixelsPerQuad`. The errors of the sand do not matter. `cell` is the side of a cell [scene
+    /// unit]. Returns nullopt if a part of the box is behind the eye. The rule of resting sand must then choose.
     [[nodiscard]] std::optional<int> levelWhileMoving(const shapes::Box& box, double cell, int coarsest) const;
 
 private:

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/displacement.hpp"
@@ -56,7 +55,7 @@ public:
     [[nodiscard]] std::uint64_t hash() override;
     void endStep(std::uint64_t number) override;
     [[nodiscard]] const Movement* movement() const override { return &movement_; }
-    void resumeMovement(Movement movement) override { movement_ = std::move(movement); }
+    void resumeMovement(const Movement& movement) override { movement_ = movement; }
     void corruptMovement(int column, int row) override;
     void audit(int tiles) override;
     [[nodiscard]] const HashTiles& hashTiles() const override { return hash_; }

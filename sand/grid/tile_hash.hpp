@@ -22,8 +22,8 @@ public:
 
     /// Marks the tiles that overlap `cells` as changed.
     void touch(const CellRect& cells);
-    /// Hashes the marked tiles again, and calls `changed` with each tile whose hash is another one. The tiles that are
-    /// marked may depend on how the sand is swept; those that have changed do not.
+    /// Hashes the marked tiles again, and calls `changed` with each tile whose hash is another one. Which tiles
+    /// are marked may depend on how the sand is swept. Which tiles have changed does not.
     void update(const HeightField& field, const std::function<void(int)>& changed);
     /// Returns the sum over all tiles at the last update.
     [[nodiscard]] std::uint64_t sum() const { return sum_; }

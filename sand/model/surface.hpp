@@ -152,7 +152,7 @@ public:
     /// Returns when the sand moved last, or null for a TIN.
     [[nodiscard]] virtual const Movement* movement() const { return nullptr; }
     /// Replaces movement(), after replace(), by that of a state. Called only if movement() is not null.
-    virtual void resumeMovement(Movement /* movement */) {}
+    virtual void resumeMovement(const Movement& /* movement */) {}
     /// Changes a bit of movement(), as Replica::corruptMovement() describes.
     virtual void corruptMovement(int /* column */, int /* row */) {}
 

@@ -22,8 +22,8 @@ bool Sharpening::allSharp(const sand::Movement& movement) const {
     return movement.newest == 0 || movement.step - movement.newest >= longest_;
 }
 
-/// Returns the places in the queue of tiles that wait: for each age, which is the number of steps since the last
-/// movement, the place of the first tile with this age at the step in which these tiles began to wait.
+/// Returns places in the queue of the tiles that wait. The age of a tile is the number of steps since its last
+/// movement. For each age, returns the place of the first such tile in the step in which it began to wait.
 std::vector<std::uint64_t> Sharpening::firstPlaces(const sand::Movement& movement) const {
     std::vector<std::uint64_t> counts(longest_ + 1, 0);
     for (const std::uint64_t moved : movement.moved) {

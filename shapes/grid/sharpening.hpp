@@ -12,9 +12,10 @@ namespace shapes {
 /// Rule for the hash tiles of a height field whose sand counts as moving, so that it is drawn more coarsely.
 ///
 /// A tile counts as moving for half a second of steps, and at least two steps, after the last step that has moved its
-/// sand. Then it waits until it is sharpened: each step sharpens a fixed number of tiles, first those that have come to
-/// rest first, and row by row among these. So a field that comes to rest as a whole costs no long frame. The result
-/// depends on nothing but sand::Movement, so that all replicas agree, also one that goes on from a state.
+/// sand. Then it waits until it is sharpened. Each step sharpens a fixed number of tiles: the tiles that have waited
+/// longest, row by row. So a field that comes to rest as a whole costs no long frame.
+///
+/// The result follows from sand::Movement alone, so that all replicas agree. This includes a replica that was resumed.
 class Sharpening {
 public:
     /// `tiles` is the number of hash tiles of the field.

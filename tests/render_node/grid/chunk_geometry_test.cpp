@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -33,7 +35,8 @@ protected:
         glGetBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(geometry_.bytes()), sent.data());
         const auto used = render_node::trianglesOf(16, 16, levels);
         return std::ranges::all_of(used, [&](std::uint16_t i) {
-            return i < sent.size() && std::memcmp(&sent[i], &wanted.at(i), sizeof(GridVertex)) == 0;
+            using Bytes = std::array<std::uint8_t, sizeof(GridVertex)>;
+            return i < sent.size() && std::bit_cast<Bytes>(sent[i]) == std::bit_cast<Bytes>(wanted.at(i));
         });
     }
     std::unique_ptr<render_node::GlContext> context_ =

@@ -112,7 +112,7 @@ protected:
         }
         return drawn;
     }
-    /// Returns a replica that has gone on from the state of another.
+    /// Returns a replica that was resumed from the state of another.
     [[nodiscard]] sand::Replica healed() const {
         sand::Replica other(*scene_);
         other.decodeState(replica_->encodeState());

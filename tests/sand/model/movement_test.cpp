@@ -98,7 +98,8 @@ TEST(Movement, IsTheLastStepThatChangedAHeightInAHashTile) {
     EXPECT_GT(rested, 100U);
 }
 
-// A replica visits and marks other blocks than its twin. Some hash the sand only now and then. One goes on from states.
+// A replica visits and marks other blocks than its twin. Some hash the sand only now and then. One is resumed from its
+// state after each step.
 TEST(Movement, IsTheSameHoweverTheSandIsSweptAndHashed) {
     const unsigned seed = test::randomSeed();
     SCOPED_TRACE(test::again(seed));
