@@ -186,7 +186,7 @@ void chooseView(ProgramOptions& options, const World& world) {
 /// Returns the drills of --inject that are still to happen.
 std::vector<Drill> drillsOf(const ProgramOptions& options, const World& world) {
     const FaultTargets targets{world.wall.ranks(), world.scene.rules.columns, world.scene.rules.rows,
-                               options.session.server.has_value(), world.scene.tin == nullptr};
+                               options.session.server.has_value(), world.scene.recordsMovement()};
     std::vector<Drill> drills;
     for (const std::string& text : options.injections) {
         drills.push_back({text, parseFault(text, targets)});

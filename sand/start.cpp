@@ -26,6 +26,8 @@ std::string FieldSize::text() const {
     return std::to_string(columns) + " x " + std::to_string(rows) + (nominal ? " nominal cells of a TIN" : " cells");
 }
 
+bool Start::recordsMovement() const { return tin == nullptr; }
+
 void Start::beginAs(tin::TinStart start) {
     tin = std::make_shared<const tin::TinStart>(std::move(start));
     rules.tin = tin->digest();

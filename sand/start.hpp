@@ -51,6 +51,8 @@ struct Start {
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.tuning.tool.radius * terrain.cellSize() / kProbePerCell;
     }
+    /// Returns whether a replica of this sand records sand::Movement.
+    [[nodiscard]] bool recordsMovement() const;
     /// Makes the TIN `start` the sand that a replica begins with. Sets `tin`, `terrain` and `rules.tin`; keeps the cell
     /// size.
     void beginAs(tin::TinStart start);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "host/print_line.hpp"
-#include "shapes/grid/sharpening.hpp"
+#include "shapes/model/sharpening.hpp"
 
 namespace master {
 

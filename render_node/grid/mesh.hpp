@@ -18,9 +18,9 @@
 #include "render_node/surface/drawn_surface.hpp"
 #include "shapes/grid/chunk_layout.hpp"
 #include "shapes/grid/hole_edges.hpp"
-#include "shapes/grid/sharpening.hpp"
 #include "shapes/grid/vertices.hpp"
 #include "shapes/model/box.hpp"
+#include "shapes/model/sharpening.hpp"
 
 namespace render_node {
 

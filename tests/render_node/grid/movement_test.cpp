@@ -11,7 +11,7 @@
 
 #include "sand/grid/dunes.hpp"
 #include "scene/model/scene.hpp"
-#include "shapes/grid/sharpening.hpp"
+#include "shapes/model/sharpening.hpp"
 #include "tests/support/pictures/redraw_fixture.hpp"
 #include "tests/support/sand/sand_of.hpp"
 #include "tests/support/seed.hpp"

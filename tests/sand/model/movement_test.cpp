@@ -143,6 +143,8 @@ TEST(Movement, OfAReplicaIsCorruptedWithoutItsSand) {
 TEST(Movement, IsNotRecordedForATin) {
     Replica replica(samples::tinScene());
     EXPECT_EQ(replica.surface().movement(), nullptr);
+    EXPECT_FALSE(samples::tinScene().recordsMovement());
+    EXPECT_TRUE(samples::flatScene(8, 8).recordsMovement());
     replica.corruptMovement(0, 0);
     EXPECT_EQ(replica.movementDigest(), 0U);
     Replica other(samples::tinScene());

@@ -31,6 +31,7 @@ BY_HAND = {
     "journal/format.cpp": "length, type, mark and checksum around a record",
     "sand/grid/snapshot.cpp": "the outflow before compressed cells",
     "sand/model/grid_codec.cpp": "compressed cells",
+    "sand/model/movement.cpp": "runs of equal numbers",
     "sand/model/step.cpp": "differences between points of a path",
     "sand/replica.cpp": "the head of a state",
     "sand/tin/snapshot.cpp": "a compressed TIN",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shapes/grid/sharpening.hpp"
+#include "shapes/model/sharpening.hpp"
 
 #include <algorithm>
 
