@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -13,6 +12,7 @@
 #include <optional>
 
 #include "bench/report/timing.hpp"
+#include "pictures/compare.hpp"
 #include "pictures/png_file.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/scene_painter.hpp"
@@ -59,7 +59,7 @@ scene::Scene plateauOf(int side, int from, int end, int rows) {
     scene::Scene scene = fieldOf(side, 34, 1);
     for (int y = (side - rows) / 2; y < (side + rows) / 2; ++y) {
         for (int x = from; x < end; ++x) {
-            scene.terrain.setHeight(x, y, sand::kMaxHeight / 2);
+            scene.terrain.setHeight(x, y, sand::kMaxHeight);
         }
     }
     return scene;
@@ -142,16 +142,10 @@ void drawFrame(Ruled& rule, const sand::Replica& replica, const sand::SurfaceCha
                            (double(rule.target.width()) * rule.target.height()));
 }
 
-double badPixels(const sample::Pixels& exact, const sample::Pixels& picture) {
-    double bad = 0;
-    for (std::size_t i = 0; i < exact.size(); i += 3) {
-        bool differs = false;
-        for (std::size_t channel = i; channel < i + 3; ++channel) {
-            differs = differs || std::abs(int{exact[channel]} - int{picture[channel]}) > kBadLevel;
-        }
-        bad += differs ? 1 : 0;
-    }
-    return bad;
+pictures::Image imageOf(const render_node::EyeTarget& target) {
+    pictures::Image image(target.width(), target.height());
+    image.rgb = target.read();
+    return image;
 }
 
 class MovingSand {
@@ -203,18 +197,16 @@ private:
         }
         if (exact_) {
             drawFrame(*exact_, replica_, change, camera);
-            const sample::Pixels exact = exact_->target.read();
+            const pictures::Image exact = imageOf(exact_->target);
             for (const auto& rule : rules_) {
-                rule->bad += badPixels(exact, rule->target.read());
-                rule->compared += static_cast<double>(exact.size()) / 3;
+                rule->bad += static_cast<double>(pictures::compare(exact, imageOf(rule->target), kBadLevel).badPixels);
+                rule->compared += static_cast<double>(exact.pixels());
             }
         }
         if (!options_.folder.empty()) {
             std::filesystem::create_directories(options_.folder);
-            const render_node::EyeTarget& target = rules_.front()->target;
-            pictures::Image image(target.width(), target.height());
-            image.rgb = target.read();
-            pictures::writePng(std::filesystem::path(options_.folder) / fmt::format("frame_{:04}.png", frame), image);
+            pictures::writePng(std::filesystem::path(options_.folder) / fmt::format("frame_{:04}.png", frame),
+                               imageOf(rules_.front()->target));
         }
     }
 

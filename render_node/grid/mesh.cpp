@@ -11,16 +11,15 @@ namespace {
 
 constexpr int kGroup = 8;  // [chunk], side of a group
 
-int tilesFor(int cells) { return (cells + sand::kHashTile - 1) / sand::kHashTile; }
-
 }  // namespace
 
 GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun, int stepsPerSecond)
     : surface_(data.field, data.ground),
       sun_(sun),
       layout_(surface_.columns(), surface_.rows()),
-      sharpening_(stepsPerSecond, static_cast<std::size_t>(tilesFor(surface_.columns()) * tilesFor(surface_.rows()))),
-      tiles_{0, 0, tilesFor(surface_.columns()), tilesFor(surface_.rows())},
+      sharpening_(stepsPerSecond, static_cast<std::size_t>(sand::hashTilesAlong(surface_.columns()) *
+                                                           sand::hashTilesAlong(surface_.rows()))),
+      tiles_{0, 0, sand::hashTilesAlong(surface_.columns()), sand::hashTilesAlong(surface_.rows())},
       moving_(static_cast<std::size_t>(tiles_.x1 * tiles_.y1), 0) {
     makeChunks();
     makeGroups();
@@ -165,8 +164,8 @@ void GridMesh::markMoving(int tile) {
 /// Returns whether a hash tile that counts as moving has cells on which these vertices depend.
 bool GridMesh::dependsOnMoving(const sand::CellRect& vertices) const {
     const sand::CellRect cells = surface_.cellsUnder(vertices.grownBy(shapes::GridVertices::kReach));
-    const sand::CellRect tiles{cells.x0 / sand::kHashTile, cells.y0 / sand::kHashTile, tilesFor(cells.x1),
-                               tilesFor(cells.y1)};
+    const sand::CellRect tiles{cells.x0 / sand::kHashTile, cells.y0 / sand::kHashTile, sand::hashTilesAlong(cells.x1),
+                               sand::hashTilesAlong(cells.y1)};
     for (int y = tiles.y0; y < tiles.y1; ++y) {
         const auto row = moving_.begin() + y * tiles_.x1;
         if (std::find(row + tiles.x0, row + tiles.x1, 1) != row + tiles.x1) {

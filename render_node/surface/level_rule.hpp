@@ -24,8 +24,7 @@ struct LevelErrors {
 class LevelRule {
 public:
     static constexpr double kLightPerPixel = 0.08;  // [1/pixel], share of the sun's full light: about 8 levels of 255
-
-    static constexpr double kPixelsPerQuad = 4;  // of moving sand
+    static constexpr double kPixelsPerQuad = 4;     // of moving sand
 
     /// With `bound` 0 the rule chooses level 0 everywhere. With `pixelsPerQuad` 0, moving sand gets the level of sand
     /// at rest.

@@ -169,7 +169,7 @@ void GridSurface::endStep(std::uint64_t number) {
 }
 
 void GridSurface::corruptMovement(int column, int row) {
-    const int across = (field_.columns() + kHashTile - 1) / kHashTile;
+    const int across = hashTilesAlong(field_.columns());
     movement_.moved[static_cast<std::size_t>(row / kHashTile * across + column / kHashTile)] ^= 1;
 }
 

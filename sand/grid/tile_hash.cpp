@@ -9,9 +9,8 @@
 namespace sand::grid {
 
 TileHash::TileHash(const HeightField& field)
-    : columns_(field.columns()), rows_(field.rows()), tilesAcross_((columns_ + kHashTile - 1) / kHashTile) {
-    const int tilesDown = (rows_ + kHashTile - 1) / kHashTile;
-    hashes_.assign(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>(tilesDown), 0);
+    : columns_(field.columns()), rows_(field.rows()), tilesAcross_(hashTilesAlong(columns_)) {
+    hashes_.assign(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>(hashTilesAlong(rows_)), 0);
     dirty_.assign(hashes_.size(), 0);
     for (int tile = 0; tile < tileCount(); ++tile) {
         rehash(field, tile);

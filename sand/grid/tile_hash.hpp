@@ -20,7 +20,7 @@ class TileHash final : public HashTiles {
 public:
     explicit TileHash(const HeightField& field);
 
-    /// Marks the tiles that overlap `cells` as changed.
+    /// Marks the tiles that overlap `cells`, because they may have changed.
     void touch(const CellRect& cells);
     /// Hashes the marked tiles again, and calls `changed` with each tile whose hash is another one. Which tiles
     /// are marked may depend on how the sand is swept. Which tiles have changed does not.

@@ -12,6 +12,9 @@ namespace sand {
 
 inline constexpr int kHashTile = 32;  // [cell], side of a hash tile of a height field
 
+/// Returns the number of hash tiles along a side of so many cells.
+[[nodiscard]] constexpr int hashTilesAlong(int cells) { return (cells + kHashTile - 1) / kHashTile; }
+
 /// The steps in which the sand of a height field moved last, by hash tile. Drawing shows moving sand more coarsely.
 ///
 /// Replicas that have applied the same steps have equal numbers, also if they began with a state. The state hash does

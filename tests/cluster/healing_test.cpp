@@ -114,6 +114,22 @@ TEST_F(Healing, FindsAndHealsMovementThatDiffers) {
     expectEqualPictures("undisturbed", "out");
 }
 
+// Two ranks have no majority. With a journal its replay decides. Without one the master's sand is right, whatever it
+// is.
+TEST_F(Healing, OfMovementNeedsNoMajority) {
+    const std::string wallFile = wall(1, 1);
+    const std::string fault = "movement:rank=1,frame=10,column=64,row=64";
+    for (const auto& [journal, judge] : {std::pair{"required", "journal"}, {"off", "master"}}) {
+        const Ended ended =
+            runToEnd({"--wall", wallFile, "--scene", scene(), "--device", "script:gis", "--pace", "fast", "--steps",
+                      "80", "--out", out(), "--journal", journal, "--inject", fault});
+        ASSERT_EQ(ended.status, 0) << ended.output;
+        EXPECT_TRUE(ended.has("divergence", {{"frame", 10}, {"judge", judge}, {"agreeing", 1}})) << ended.output;
+        expectHealed(ended, {{"frame", 10}, {"rank", 1}, {"source", "rank"}, {"source_rank", 0}});
+        EXPECT_EQ(summary()["divergences"], 1);
+    }
+}
+
 // A column of sand four cells high appears in the middle of a sliding dune, in the frame whose pictures are written.
 TEST_F(Healing, RedrawsTheFrameInWhichItHappens) {
     ASSERT_EQ(slide({"--frames", "20"}, "undisturbed").status, 0);

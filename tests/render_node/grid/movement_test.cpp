@@ -12,6 +12,7 @@
 #include "sand/grid/dunes.hpp"
 #include "scene/model/scene.hpp"
 #include "shapes/model/sharpening.hpp"
+#include "tests/sand/spread/sessions.hpp"
 #include "tests/support/pictures/redraw_fixture.hpp"
 #include "tests/support/sand/sand_of.hpp"
 #include "tests/support/seed.hpp"
@@ -19,9 +20,9 @@
 namespace {
 
 using render_node::Camera;
-using render_node::EyeTarget;
 using render_node::ScenePainter;
 using sample::Pixels;
+using sample::TwiceDrawn;
 
 /// Returns a field with two levels above level 0, a needle, and a heap that slides.
 scene::Scene slidingScene(int stepsPerSecond) {
@@ -39,17 +40,6 @@ scene::Scene slidingScene(int stepsPerSecond) {
     scene.rules.stepsPerSecond = stepsPerSecond;
     return scene;
 }
-
-/// One eye of one tile, with the picture that is drawn in parts.
-struct View {
-    walls::Screen screen;
-    walls::Eye eye;
-    EyeTarget inParts, whole;
-    render_node::EyeMemory memory{};
-
-    View(const walls::Tile& tile, walls::Eye shown)
-        : screen(tile.screen), eye(shown), inParts(tile.pixels.x, tile.pixels.y), whole(tile.pixels.x, tile.pixels.y) {}
-};
 
 class MovingSand : public sample::Redraw {
 protected:
@@ -75,7 +65,7 @@ protected:
         step.number = replica_->stepNumber() + 1;
         replica_->apply(step);
     }
-    [[nodiscard]] Camera cameraOf(const View& view) const {
+    [[nodiscard]] Camera cameraOf(const TwiceDrawn& view) const {
         const glm::dvec3 eye = walls::eyePosition(viewer_, view.eye);
         return {walls::viewOf(view.screen, eye, wall_.clip.near, wall_.clip.far).viewProjection, eye};
     }
@@ -84,7 +74,7 @@ protected:
         painter_->update(replica_->surface().data(), replica_->takeChange());
         painter_->setTool(replica_->probe(), replica_->engaged());
         coarse_ = 0;
-        for (View& view : views_) {
+        for (TwiceDrawn& view : views_) {
             const Camera camera = cameraOf(view);
             const render_node::PixelRect drawn = painter_->drawIfChanged(camera, view.inParts, view.memory);
             const Pixels whole = sample::draw(*painter_, camera, view.whole);
@@ -100,14 +90,14 @@ protected:
         fresh.setTool(replica.probe(), replica.engaged());
         fresh.setSharp(sharp);
         std::vector<Pixels> pictures;
-        for (View& view : views_) {
+        for (TwiceDrawn& view : views_) {
             pictures.push_back(sample::draw(fresh, cameraOf(view), view.whole));
         }
         return pictures;
     }
     [[nodiscard]] std::vector<Pixels> pictures() const {
         std::vector<Pixels> drawn;
-        for (const View& view : views_) {
+        for (const TwiceDrawn& view : views_) {
             drawn.push_back(view.inParts.read());
         }
         return drawn;
@@ -129,7 +119,7 @@ protected:
     walls::Viewer viewer_;
     glm::dmat4 sceneToRoom_{1};
     std::optional<ScenePainter> painter_;
-    std::vector<View> views_;
+    std::vector<TwiceDrawn> views_;
     int coarse_ = 0;  // chunks above level 0 in all whole pictures of the last draw()
     int inPart_ = 0;  // pictures that were drawn in part
 };
@@ -148,25 +138,15 @@ TEST_F(MovingSand, InARandomSessionIsDrawnInPartsAsAWhole) {
                                                        {"tiled_3x4", {5, 9}, walls::Stereo::passive, 1},
                                                        {"flex_cave", {1}, walls::Stereo::active, 1000}}) {
         show(session.wall, session.tiles, session.stereo, session.stepsPerSecond);
-        const std::shared_ptr<const sand::SurfaceCopy> saved = replica_->copySand();
+        const sand::Replica saved = *replica_;
         sand::ProbePoint hand = place(200, 100, 0);
         for (int frame = 0; frame < 90; ++frame) {
             for (unsigned steps = random() % 4; steps > 0; --steps) {
                 sand::Step step{.engaged = frame % 30 < 12, .path = {hand}};
                 hand.x += static_cast<std::int32_t>(random() % 6000) - 2600;
                 hand.y += static_cast<std::int32_t>(random() % 6000) - 3000;
-                switch (random() % 60) {
-                    case 0:
-                        step.edit = sand::Edit::undo;
-                        break;
-                    case 1:
-                        step.edit = sand::Edit::reset;
-                        break;
-                    case 2:
-                        step.edit = sand::Edit::loaded(saved->encode());
-                        break;
-                    default:
-                        break;
+                if (random() % 4 == 0) {
+                    step.edit = spread::randomStep(scene_->rules, saved, random).edit;
                 }
                 apply(step);
             }

@@ -50,16 +50,9 @@ scene::Scene sessionScene(sand::Rim rim) {
     return scene;
 }
 
-/// One eye of one tile, drawn both ways.
-struct Twice {
-    walls::Screen screen;
-    walls::Eye eye;
-    EyeTarget inParts, whole;
-    render_node::EyeMemory memory{};
+struct Twice : sample::TwiceDrawn {
+    using TwiceDrawn::TwiceDrawn;
     Pixels before{};
-
-    Twice(const walls::Tile& tile, walls::Eye shown)
-        : screen(tile.screen), eye(shown), inParts(tile.pixels.x, tile.pixels.y), whole(tile.pixels.x, tile.pixels.y) {}
 };
 
 /// Things that a step's frame shows in addition to the sand.

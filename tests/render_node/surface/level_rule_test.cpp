@@ -63,15 +63,19 @@ TEST(LevelRule, NoLevelIsCoarserThanAllowed) {
     EXPECT_EQ(ruleOf(0).level(kBox, {}, kCoarsest), 0) << "with a bound of 0 every cell is drawn";
 }
 
-// A perspective camera looks along the ground. It is 10 units from the middle of the box, and 9 from the nearest side.
-// Half of the picture's height is one unit at a distance of one unit.
-TEST(LevelRule, TheNearestPartOfABoxDecides) {
+/// Returns a rule for a perspective camera that looks along the ground. It is 10 units from the middle of the box, and
+/// 9 from the nearest side. Half of the picture's height is one unit at a distance of one unit.
+LevelRule fromTheSouth() {
     glm::dmat4 sceneToClip(0);
     sceneToClip[0] = {1, 0, 0, 0};
     sceneToClip[1] = {0, 0, 1, 1};
     sceneToClip[2] = {0, 1, 0, 0};
     sceneToClip[3] = {0, 0, 0, 10};
-    const LevelRule rule(sceneToClip, {100, 100}, 0.5);
+    return {sceneToClip, {100, 100}, 0.5};
+}
+
+TEST(LevelRule, TheNearestPartOfABoxDecides) {
+    const LevelRule rule = fromTheSouth();
     LevelErrors errors;
     // At the nearest side, a unit upwards is 50/9 pixels, and half of a pixel is 0.09 of a unit. The rule takes the
     // largest factor of all corners, which may be 11/9 as large, so that the bound is at least 0.0736.
@@ -102,12 +106,7 @@ TEST(LevelRule, MovingSandHasQuadsOfAtLeastFourPixels) {
 }
 
 TEST(LevelRule, SandAroundTheEyeIsMeasuredAlthoughItMoves) {
-    glm::dmat4 perspective(0);
-    perspective[0] = {1, 0, 0, 0};
-    perspective[1] = {0, 0, 1, 1};
-    perspective[2] = {0, 1, 0, 0};
-    perspective[3] = {0, 0, 0, 10};
-    const LevelRule rule(perspective, {100, 100}, 0.5);
+    const LevelRule rule = fromTheSouth();
     EXPECT_NE(rule.levelWhileMoving(kBox, 1, kCoarsest), std::nullopt);
     const Box reachingBehind{{-1, -11, -1}, {1, 1, 1}};
     EXPECT_EQ(rule.levelWhileMoving(reachingBehind, 1, kCoarsest), std::nullopt);
@@ -116,12 +115,7 @@ TEST(LevelRule, SandAroundTheEyeIsMeasuredAlthoughItMoves) {
 // The camera of above is 10 units from the middle of the box, and looks along its ground. A level quad at height h,
 // y units away, is h / y^3 * 50 * 50 pixels large. The corner at height 1 that is 9 units away decides: 3.43 pixels.
 TEST(LevelRule, TheLargestQuadOfMovingSandDecides) {
-    glm::dmat4 perspective(0);
-    perspective[0] = {1, 0, 0, 0};
-    perspective[1] = {0, 0, 1, 1};
-    perspective[2] = {0, 1, 0, 0};
-    perspective[3] = {0, 0, 0, 10};
-    const LevelRule rule(perspective, {100, 100}, 0.5);
+    const LevelRule rule = fromTheSouth();
     EXPECT_EQ(rule.levelWhileMoving(kBox, 1, kCoarsest), 1);
     EXPECT_EQ(rule.levelWhileMoving(kBox, 1.09, kCoarsest), 0);
     EXPECT_EQ(rule.levelWhileMoving(kBox, 1.07, kCoarsest), 1);
