@@ -37,12 +37,15 @@ TEST_F(Lockstep, OneFourAndTwelveRanksOfAnyThreadsHashLikeTheirJournal) {
     }
 }
 
+// 256 columns have two levels of detail.
+constexpr const char* kTwoLevels =
+    "name = \"large\"\n[field]\ncolumns = 256\nrows = 256\n[terrain]\nheight = 0.2\n[material]\n[tool]\nradius = "
+    "0.04\n";
+
 // The hand digs until the end, so that sand moves in the last frame. Its picture, which stays, is drawn whole with
 // other levels. All frames between it and the first one are drawn in part.
 TEST_F(Lockstep, TheLastFrameDrawsMovingSandAsFinelyAsSandAtRest) {
-    const std::string large = write("large.toml",
-                                    "name = \"large\"\n[field]\ncolumns = 256\nrows = 256\n[terrain]\nheight = "
-                                    "0.2\n[material]\n[tool]\nradius = 0.04\n");
+    const std::string large = write("large.toml", kTwoLevels);
     for (const auto& [what, sand] : {std::pair{"256 columns have two levels", large}, {"128 have one", scene()}}) {
         const Ended ended = runToEnd({"--wall", wall(1, 1), "--scene", sand, "--device", "script:gis", "--pace", "fast",
                                       "--steps", "80", "--out", out(), "--no-pictures"});
@@ -51,6 +54,23 @@ TEST_F(Lockstep, TheLastFrameDrawsMovingSandAsFinelyAsSandAtRest) {
         EXPECT_EQ(views["whole"], sand == large ? 4 : 2) << what << ", two eyes: " << views;
         EXPECT_GT(views["in_part"], 5) << views;
     }
+}
+
+// A pause in a stroke draws the sand with other levels, and so does the first frame after it. The second pause makes the
+// last frame draw nothing else, so that only frames of pauses count here.
+TEST_F(Lockstep, APausedFrameDrawsMovingSandAsFinelyAsSandAtRest) {
+    const auto session = start({"--wall", wall(1, 1), "--scene", write("large.toml", kTwoLevels), "--device",
+                                "script:gis", "--out", out(), "--no-pictures"});
+    expectHand(*session);
+    awaitStatus([](const nlohmann::json& now) { return now.value("step", 0) > 40; });
+    for (const char* command : {"pause", "resume", "pause"}) {
+        const int then = ask(command).value("frame", 0);
+        awaitStatus([&](const nlohmann::json& now) { return now.value("frame", 0) > then + 3; });
+    }
+    ask("stop");
+    expectInOrder(*session);
+    const nlohmann::json views = summary()["per_rank"][0]["views"];
+    EXPECT_EQ(views["whole"], 8) << "two eyes at the start, at two pauses and between them: " << views;
 }
 
 // The commands are typed at the launcher. There is no hand, so the master numbers the steps. control_test.cpp tests
