@@ -6,7 +6,8 @@ that the launcher has seen (scripts/launcher/watch/failed_processes.py). It retu
 out.
 """
 
-GOOD, NOTE, BAD, UNMEASURED = "ok", "note", "BAD", "--"
+GOOD, NOTE, LAGGING, BAD, UNMEASURED = "ok", "note", "slow", "BAD", "--"
+NOTES = NOTE, LAGGING  # LAGGING: the session is not called good, but has exit status 0
 SESSION, START, SERVER_START = "in the session", "since the last start", "since the last start of the haptic server"
 
 # All limits of the report. A figure above its limit is marked.
@@ -20,6 +21,7 @@ LEAST_FORCE, BAD_FORCE = 0.5, 0.1  # of the ticks that ask for force, those in w
 MOST_TICKS_RAMPED = 2000  # [ticks] without force that two faults explain: each is followed by 1000 below half, in its ramp of 2 s
 BAD_SECONDS_FAULTED, LEAST_SECONDS_FAULTED = 0.1, 3  # of the seconds with a hand [1], and at least so many [s]
 MOST_SLOW_MOTION = 1.1  # time of the hand that has passed, divided by that which is in steps [1]
+LAGGING_SLOW_MOTION = 4  # the same, from which the session is called slow [1]
 MOST_SKEW_PERIODS = 1  # of the 99th percentile [period of the wall]
 
 # Causes for which the hand has less than half of the force (docs/forces.md), in the words of the line force. Nobody is to
@@ -187,7 +189,7 @@ def motion(summary, _):
     if found is None:
         return UNMEASURED, f"not measured: the tool was hardly in the sand {START}{more}"
     words = f"the tool was {found:.1f} times as slow as the hand {START}" if found > MOST_SLOW_MOTION else f"the tool was as fast as the hand {START}"
-    return NOTE if found > MOST_SLOW_MOTION else GOOD, words + more
+    return LAGGING if found > LAGGING_SLOW_MOTION else NOTE if found > MOST_SLOW_MOTION else GOOD, words + more
 
 
 def refusals(summary, _):

@@ -7,7 +7,7 @@ import pathlib
 import shlex
 
 from ask import session_results, session_rules
-from ask.session_lines import BAD, GOOD, NOTE, UNMEASURED
+from ask.session_lines import BAD, GOOD, LAGGING, NOTE, NOTES, UNMEASURED
 from base import checked_json, console, events, layout
 from base.bad_input import BadInput
 from base.command_line import NOT_YET
@@ -15,8 +15,8 @@ from base.command_line import NOT_YET
 VERSION = 1  # of the JSON that --json prints, as in docs/schemas/report.schema.json
 NOT_GOOD = 1  # exit status of a session that ended in order and is not good
 BAD_INPUT = 2  # exit status if the summary is damaged
-COLOURS = {GOOD: 32, NOTE: 33, BAD: 31, UNMEASURED: 2}
-JSON_MARKS = {GOOD: "ok", NOTE: "note", BAD: "BAD", UNMEASURED: "not measured"}
+COLOURS = {GOOD: 32, NOTE: 33, LAGGING: 33, BAD: 31, UNMEASURED: 2}
+JSON_MARKS = {GOOD: "ok", NOTE: "note", LAGGING: "slow", BAD: "BAD", UNMEASURED: "not measured"}
 
 
 def replay_command(summary, out):
@@ -36,10 +36,11 @@ def final_status(lines, status):
 
 def verdict(lines, status):
     """Returns the words after the scene's name. `status` is from final_status()."""
-    notes = sum(mark == NOTE for mark, _, _ in lines)
     if status != 0:
         return f"NOT GOOD, exit status {status}"
-    return "good" if notes == 0 else "good, 1 note" if notes == 1 else f"good, {notes} notes"
+    notes = sum(mark in NOTES for mark, _, _ in lines)
+    name = "slow" if any(mark == LAGGING for mark, _, _ in lines) else "good"
+    return name if notes == 0 else f"{name}, 1 note" if notes == 1 else f"{name}, {notes} notes"
 
 
 def text_of(title, lines, out, replay, status, colours):
@@ -68,7 +69,7 @@ def lines_of_no_summary():
 def json_of(lines, summary, out, status):
     """Returns the report for programs. `summary` is None if the session wrote none that can be read."""
     report = {"version": VERSION, "status": status, "good": status == 0 and summary is not None, "out": str(out),
-              "notes": [{"mark": mark, "name": name, "message": words} for mark, name, words in lines if mark in (NOTE, BAD)],
+              "notes": [{"mark": mark, "name": name, "message": words} for mark, name, words in lines if mark in (*NOTES, BAD)],
               "lines": [{"mark": JSON_MARKS[mark], "name": name, "message": words} for mark, name, words in lines],
               "session": None}
     if summary is None:
@@ -146,6 +147,6 @@ class Report:
         elif lines:
             console.OUT.line(text_of(title, lines, self.out, replay, status, console.colours()))
         if lines:
-            named = {mark: [name for found, name, _ in lines if found == mark] for mark in (BAD, NOTE)}
-            events.emit("report", status=status, bad=named[BAD], notes=named[NOTE])
+            bad, notes = ([name for mark, name, _ in lines if mark in marks] for marks in ((BAD,), NOTES))
+            events.emit("report", status=status, bad=bad, notes=notes)
         return status

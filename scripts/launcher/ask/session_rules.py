@@ -37,7 +37,7 @@ class Rule:
         if found is None:
             return None
         mark, words = found
-        advice = f"; docs/{self.page}" if mark in (lines.NOTE, lines.BAD) else ""
+        advice = f"; docs/{self.page}" if mark in (*lines.NOTES, lines.BAD) else ""
         return mark, self.name, checked_json.one_line(words) + advice
 
 
@@ -77,7 +77,7 @@ RULES = (
          "steps withheld because of the wall or the disk, or samples left out. Steps withheld at the start or in a pause have no mark", "",
          "latency.md", ("hand.asked", "haptic.steps_withheld", "haptic.steps_withheld_by", "haptic.samples_dropped"), lines.strokes),
     Rule("motion", "time while the tool is in the sand, divided by the time of the hand that is in steps; sweeps that the tool waits for at the end. "
-         "Not measured with `--pace fast`, whose hand waits", f"up to {lines.MOST_SLOW_MOTION}", "more", "", "how_it_works.md",
+         "Not measured with `--pace fast`, whose hand waits", f"up to {lines.MOST_SLOW_MOTION}", f"more; `slow` above {lines.LAGGING_SLOW_MOTION}", "", "how_it_works.md",
          ("hand.asked", "hand.slow_motion", "sweeps_owed", "pace"), lines.motion),
     Rule("refusals", "connections of the haptic link that either side refused", "none", "any", "", "security.md",
          ("hand.asked", "haptic.refused_by_server", "haptic.refused"), lines.refusals),

@@ -13,7 +13,7 @@ from sample_summary import (DARK, HEAD, OUTCOMES, RECOVERY, REFUSALS, SAMPLES, S
                             without_hand)
 
 from ask import session_lines, session_rules
-from ask.session_lines import BAD, GOOD, NOTE, UNMEASURED
+from ask.session_lines import BAD, GOOD, LAGGING, NOTE, UNMEASURED
 
 
 class Lines(unittest.TestCase):
@@ -33,7 +33,7 @@ class Lines(unittest.TestCase):
     def only(self, name, mark, *words, failures=(), **fields):
         """Checks a line, and that no other line of the session is marked."""
         said = self.check(name, mark, *words, failures=failures, **fields)
-        marked = [line[:2] for line in session_rules.lines_of(changed(**fields), failures) if line[0] in (NOTE, BAD)]
+        marked = [line[:2] for line in session_rules.lines_of(changed(**fields), failures) if line[0] not in (GOOD, UNMEASURED)]
         self.assertEqual(marked, [(mark, name)])
         return said
 
@@ -235,7 +235,8 @@ class Hands(Lines):
 
     def test_a_tool_that_is_slower_than_the_hand_is_noted(self):
         self.check("motion", GOOD, "as fast as the hand", hand__slow_motion=1.1)
-        self.only("motion", NOTE, "the tool was 6.3 times as slow as the hand", hand__slow_motion=6.3)
+        self.only("motion", NOTE, "the tool was 4.0 times as slow as the hand", hand__slow_motion=4.0)
+        self.only("motion", LAGGING, "the tool was 6.3 times as slow as the hand", hand__slow_motion=6.3)
         self.check("motion", UNMEASURED, "hardly in the sand", hand__slow_motion=None)
         self.check("motion", GOOD, "waits for 70 sweeps at the end", sweeps_owed=70)
         self.check("motion", UNMEASURED, "a recorded hand waits for the sand", pace="fast", hand__slow_motion=None)

@@ -18,6 +18,7 @@ from ask import session_report, session_rules
 from base import json_schema
 
 SLOW = changed(seconds=20.0, fps=30.0)
+LAGGING = changed(hand__slow_motion=4.1)
 WRONG = changed(volume_final=891)
 # Writes the summary that a test has prepared, as a master does at the end of a session.
 MPIRUN = """#!/bin/sh
@@ -51,6 +52,8 @@ class Text(unittest.TestCase):
     def test_the_first_line_counts_notes_and_tells_the_exit_status(self):
         self.assertEqual(self.text(SLOW).splitlines()[0], "dunes: good, 1 note")
         self.assertEqual(self.text({**SLOW, "steps_left_out": 2}).splitlines()[0], "dunes: good, 2 notes")
+        self.assertEqual(self.text(LAGGING).splitlines()[0], "dunes: slow, 1 note")
+        self.assertEqual(self.text({**LAGGING, "steps_left_out": 2}).splitlines()[0], "dunes: slow, 2 notes")
         self.assertEqual(self.text(WRONG).splitlines()[0], "dunes: NOT GOOD, exit status 1")
         self.assertEqual(self.text(status=137).splitlines()[0], "dunes: NOT GOOD, exit status 137")
 
