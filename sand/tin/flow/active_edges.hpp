@@ -68,6 +68,8 @@ public:
     [[nodiscard]] std::size_t size() const { return sand_.edgeCount(); }
 
 private:
+    static constexpr std::size_t kAhead = 8;  // distance from a prefetch to its use [vertex]
+
     /// A vertex that is or was watched below an obstacle.
     struct Held {
         Vertex vertex;
