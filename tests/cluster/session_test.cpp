@@ -56,8 +56,8 @@ TEST_F(Lockstep, TheLastFrameDrawsMovingSandAsFinelyAsSandAtRest) {
     }
 }
 
-// A pause in a stroke draws the sand with other levels, and so does the first frame after it. The second pause makes the
-// last frame draw nothing else, so that only frames of pauses count here.
+// Each pause in a stroke draws the sand with other levels, and so does the frame after it. The session ends in a pause,
+// so that its last frame changes no level.
 TEST_F(Lockstep, APausedFrameDrawsMovingSandAsFinelyAsSandAtRest) {
     const auto session = start({"--wall", wall(1, 1), "--scene", write("large.toml", kTwoLevels), "--device",
                                 "script:gis", "--out", out(), "--no-pictures"});
