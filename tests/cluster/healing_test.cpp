@@ -23,7 +23,7 @@ protected:
         }
         return runToEnd(arguments);
     }
-    /// Runs a fast session of dunes that slide without a hand. Its sand depends on nothing but the number of steps.
+    /// Runs a fast session of dunes that slide without a hand. Its sand depends only on the number of steps.
     Ended slide(const std::vector<std::string>& more, const std::string& folder) {
         const std::string dunes = write("dunes.toml",
                                         "name = \"dunes\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\nkind = "
@@ -176,7 +176,8 @@ TEST_F(Healing, LetsTheJournalDecideATie) {
     EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
 
-// The same bit flips in two render ranks. With the master they are three ranks, so the wrong ranks are the majority.
+// The test flips one bit in two render ranks. With the master they are three ranks, so the wrong ranks are the
+// majority.
 TEST_F(Healing, LetsTheJournalOutvoteAMajority) {
     ASSERT_EQ(slide({"--steps", "120"}, "undisturbed").status, 0);
     const Ended ended = slide({"--steps", "120", "--inject", "diverge:rank=1,frame=10,column=40,row=64,bit=12",

@@ -56,11 +56,12 @@ TEST_F(Lockstep, TheLastFrameDrawsMovingSandAsFinelyAsSandAtRest) {
     }
 }
 
-// Each pause in a stroke draws the sand with other levels, and so does the frame after it. The session ends in a pause,
-// so that its last frame changes no level.
+// A pause in a stroke changes the levels of the sand, and the end of the pause changes them back. The session ends in a
+// pause, so that its last frame changes no level. The stroke takes 28 seconds, so that a busy machine does not miss it.
 TEST_F(Lockstep, APausedFrameDrawsMovingSandAsFinelyAsSandAtRest) {
+    const std::string stroke = write("long.strokes", "speed 0.05\nstroke\npoint -0.7 0\npoint 0.7 0\n");
     const auto session = start({"--wall", wall(1, 1), "--scene", write("large.toml", kTwoLevels), "--device",
-                                "script:gis", "--out", out(), "--no-pictures"});
+                                "script:" + stroke, "--out", out(), "--no-pictures"});
     expectHand(*session);
     awaitStatus([](const nlohmann::json& now) { return now.value("step", 0) > 40; });
     for (const char* command : {"pause", "resume", "pause"}) {

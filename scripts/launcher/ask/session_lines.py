@@ -219,7 +219,7 @@ def press(summary, _):
     if first:
         words += f"; first of a {first['tool_shape']} of radius {first['tool_radius']:.4g}"
         if first["largest_radius"] is not None:
-            words += f", of which one of radius {first['largest_radius']:.4g} fits there" if first["largest_radius"] else ", of which none fits there"
+            words += f"; the largest one that fits there has radius {first['largest_radius']:.4g}" if first["largest_radius"] else "; none fits there"
     return NOTE, words
 
 
@@ -318,7 +318,7 @@ def head(summary, _):
     if told["lost"]:
         return NOTE, f"lost {counted(told['lost'], 'time')} {START}; {words}"
     if told["packets"] == 0:
-        return UNMEASURED, f"not measured: no packet of a tracker {START}; a trace sends none"
+        return UNMEASURED, f"not measured: no packet of a tracker {START}; a trace sends no packets"
     return NOTE if told["refused"] or told["strangers"] else GOOD, words
 
 

@@ -138,7 +138,7 @@ UNREAD = {
     **dict.fromkeys([f"per_rank[].{field}" for field in
                      ("renderer", "swap_lock", "draw_ms", "barrier_wait_ms", "slowest", "swap_us", "frames_agreed", "frames_differed", "healed",
                       "views.skipped", "views.pixel_share", "memory_bytes", "frame_buffer_bytes")],
-                    "a figure of one rank, for the search after a note (docs/summary.md)"),
+                    "a figure of one rank, which helps to find the cause of a note (docs/summary.md)"),
     "dark[].rank": "the line monitors has the output and its tile",
     "master_memory_bytes": "a figure for long tests, which has no good or bad in one session",
     "journal.parts": "the line journal says whether the parts are whole",

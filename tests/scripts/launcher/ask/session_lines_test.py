@@ -279,9 +279,9 @@ class Sand(Lines):
 
     def test_a_press_that_no_cell_could_take_is_noted_with_the_largest_radius(self):
         first = {"tool_shape": "sphere", "tool_radius": 0.61234, "largest_radius": 0.58}
-        self.only("press", NOTE, "in 70 steps in the session", "first of a sphere of radius 0.6123, of which one of radius 0.58 fits there",
+        self.only("press", NOTE, "in 70 steps in the session", "first of a sphere of radius 0.6123; the largest one that fits there has radius 0.58",
                   steps_unplaced=70, refused_press=first)
-        self.check("press", NOTE, "of which none fits there", steps_unplaced=1, refused_press={**first, "largest_radius": 0})
+        self.check("press", NOTE, "; none fits there", steps_unplaced=1, refused_press={**first, "largest_radius": 0})
         self.check("press", NOTE, "first of a sphere of radius 0.6123;", steps_unplaced=1, refused_press={**first, "largest_radius": None})
         self.check("press", NOTE, "in 1 step in the session", steps_unplaced=1)  # before the last start
 
