@@ -15,7 +15,8 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 COMMIT = ["-c", "user.name=mutate.sh", "-c", "user.email=mutate.sh", "-c", "commit.gpgsign=false", "commit", "--quiet"]
 LONGEST = 300  # [s], limit of a test program
-ENVIRONMENT_END = 48  # of the words behind the name in /proc/PID/stat: env_end in proc(5)
+# Places among the words behind the name in /proc/PID/stat: startcode, env_start and env_end of proc(5).
+CODE, ENVIRONMENT_BEGIN, ENVIRONMENT_END = 23, 47, 48
 MARK = "SANDWALL_MUTATED"  # name of a variable in the environment of all that builds and tests start
 SKIPPED = 77   # status of a test program that passes, but has skipped a test that needs rights
 FAILED = re.compile(r"^\[  FAILED  \] ([^ ,\n]+)", re.MULTILINE)
@@ -34,12 +35,14 @@ class Closed(Exception):
 def environment_of(process):
     """Returns the environment of a process, given by its folder in /proc. Throws OSError if it has ended.
 
-    While a process begins another program, its environment seems empty. On a busy machine that takes a while. Its address in
-    `stat` is 0 until then, which tells it from an environment that is empty.
+    While a process begins another program, its environment seems empty. On a busy machine that takes a while. An environment
+    that was opened before and is read after that seems empty, too. The kernel sets the start of the code last. With it, equal
+    addresses of the start and the end tell that an environment is really empty.
     """
     while not (text := (process / "environ").read_bytes()):
         (process / "exe").readlink()  # throws for threads of the kernel and for processes that have ended
-        if int((process / "stat").read_text().rpartition(")")[2].split()[ENVIRONMENT_END]) != 0:
+        numbers = (process / "stat").read_text().rpartition(")")[2].split()
+        if int(numbers[CODE]) != 0 and numbers[ENVIRONMENT_BEGIN] == numbers[ENVIRONMENT_END]:
             break
         time.sleep(0.001)
     return text
