@@ -12,11 +12,11 @@ import tempfile
 import threading
 import time
 
+from base.process_marks import marked
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 COMMIT = ["-c", "user.name=mutate.sh", "-c", "user.email=mutate.sh", "-c", "commit.gpgsign=false", "commit", "--quiet"]
 LONGEST = 300  # [s], limit of a test program
-# Places among the words behind the name in /proc/PID/stat: startcode, env_start and env_end of proc(5).
-CODE, ENVIRONMENT_BEGIN, ENVIRONMENT_END = 23, 47, 48
 MARK = "SANDWALL_MUTATED"  # name of a variable in the environment of all that builds and tests start
 SKIPPED = 77   # status of a test program that passes, but has skipped a test that needs rights
 FAILED = re.compile(r"^\[  FAILED  \] ([^ ,\n]+)", re.MULTILINE)
@@ -30,32 +30,6 @@ class DoesNotCompile(Exception):
 
 class Closed(Exception):
     """The run ends, and starts nothing more."""
-
-
-def environment_of(process):
-    """Returns the environment of a process, given by its folder in /proc. Throws OSError if it has ended.
-
-    While a process begins another program, its environment seems empty. On a busy machine that takes a while. An environment
-    that was opened before and is read after that seems empty, too. The kernel sets the start of the code last. With it, equal
-    addresses of the start and the end tell that an environment is really empty.
-    """
-    while not (text := (process / "environ").read_bytes()):
-        (process / "exe").readlink()  # throws for threads of the kernel and for processes that have ended
-        numbers = (process / "stat").read_text().rpartition(")")[2].split()
-        if int(numbers[CODE]) != 0 and numbers[ENVIRONMENT_BEGIN] == numbers[ENVIRONMENT_END]:
-            break
-        time.sleep(0.001)
-    return text
-
-
-def marked(mark):
-    """Returns the processes of this user that have `mark`, a whole entry NAME=VALUE, in their environment."""
-    found = []
-    for entry in pathlib.Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):  # it has ended, or belongs to another user
-            if mark in environment_of(entry).split(b"\0"):
-                found.append(int(entry.name))
-    return found
 
 
 def copy_of(source, copy):

@@ -18,6 +18,7 @@ import time
 sys.dont_write_bytecode = True
 if __name__ == "__main__":
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[1])
+from base.process_marks import has_mark
 from job import processes
 from job.mpirun_end import EndWatch
 
@@ -36,7 +37,7 @@ def end(mpirun, mark, outputs):
     watch = EndWatch(mpirun)
     asked = time.monotonic() + processes.ORDERLY_END_SECONDS
     killed = asked + processes.KILL_SECONDS
-    while processes.has_mark(mpirun, mark):
+    while has_mark(mpirun, mark):
         discard(outputs)
         now = time.monotonic()
         if now > asked or watch.stuck(now):

@@ -13,6 +13,7 @@ import time
 from base import events
 from base.bad_input import BadInput
 from base.console import print_line
+from base.process_marks import marked
 from job.job_stream import LIBC
 from job.mpirun_end import EndWatch
 
@@ -247,22 +248,6 @@ def exit_status(status):
     if -status in CRASHES:
         return CRASHED_STATUS
     return status if status >= 0 else 128 - status
-
-
-def marked(mark):
-    """Returns the ids of the processes of this user that have `mark`, a whole entry NAME=VALUE, in their environment.
-
-    Root can read every process's environment, and any user can write any mark into that of a process.
-    """
-    return [int(entry) for entry in os.listdir("/proc") if entry.isdigit() and has_mark(entry, mark)]
-
-
-def has_mark(pid, mark):
-    try:
-        ours = os.stat(f"/proc/{pid}").st_uid == os.geteuid()
-        return ours and mark in pathlib.Path("/proc", str(pid), "environ").read_bytes().split(b"\0")
-    except OSError:
-        return False  # it has ended, or belongs to another user
 
 
 class Input:

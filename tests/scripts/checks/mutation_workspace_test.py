@@ -15,9 +15,10 @@ import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "scripts" / "checks"), str(ROOT / "scripts" / "checks" / "mutation")]
+sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("launcher", "checks", "checks/mutation")]
 import run  # noqa: E402
 import workspace  # noqa: E402
+from base import process_marks  # noqa: E402
 
 
 class Copy(unittest.TestCase):
@@ -118,7 +119,7 @@ sys.exit(run.until_interrupted(lambda: run.try_all(bugs, [space], [])))
         (self.space.bin / "tests").chmod(0o755)
 
     def left(self):
-        return workspace.marked(f"{workspace.MARK}={self.folder}".encode())
+        return process_marks.marked(f"{workspace.MARK}={self.folder}".encode())
 
     def what_began(self):
         began = self.folder / "began"
@@ -141,21 +142,6 @@ sys.exit(run.until_interrupted(lambda: run.try_all(bugs, [space], [])))
         self.program(f"{self.LEAVES}; exec sleep 1000")
         self.assertEqual((self.space.run("tests Sand.*", 0.5), self.left()), ("the time limit", []))
         self.assertIsNone(other.poll(), "the process of another workspace")
-
-    def test_are_found_while_they_begin_another_program(self):
-        again = 'exec sh -c "$0" "$0"'
-        process = subprocess.Popen(["sh", "-c", again, again], env=self.space.environment())
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        mark = f"{workspace.MARK}={self.folder}".encode()
-        for _ in range(2000):
-            self.assertIn(mark, workspace.environment_of(pathlib.Path("/proc", str(process.pid))).split(b"\0"))
-
-    def test_an_empty_environment_is_told_from_one_that_is_not_there_yet(self):
-        process = subprocess.Popen(["sleep", "1000"], env={})
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        self.assertEqual(workspace.environment_of(pathlib.Path("/proc", str(process.pid))), b"")
 
     def test_of_a_run_that_was_killed_are_ended_by_the_next(self):
         left = subprocess.Popen(["sleep", "1000"], env=self.space.environment())

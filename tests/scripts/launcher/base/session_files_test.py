@@ -17,7 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 from launcher_fixture import ROOT
 from supervisor_fixture import Supervised
 from ask import session_results
-from base import session_folder
+from base import process_marks, session_folder
 from base.bad_input import BadInput
 from job import processes
 
@@ -223,23 +223,15 @@ class Others(unittest.TestCase):
 
     def test_only_processes_of_this_session_are_ended(self):
         ours, longer = self.begin(self.MARK), self.begin(self.MARK + "0")
-        self.wait_for_environment(ours, longer)
-        self.assertEqual(processes.marked(f"{processes.MARK}={self.MARK}".encode()), [ours.pid])
+        self.assertEqual(process_marks.marked(f"{processes.MARK}={self.MARK}".encode()), [ours.pid])
         self.end_all()
         self.assertEqual((ours.wait(60), longer.poll()), (-signal.SIGKILL, None))
 
     @unittest.skipIf(os.geteuid() != 0, "only root can become another user")
     def test_a_process_of_another_user_with_the_mark_of_the_session_is_not_ended(self):
         ours, theirs = self.begin(self.MARK), self.begin(self.MARK, user=NOBODY, group=NOBODY, extra_groups=[])
-        self.wait_for_environment(ours, theirs)
         self.end_all()
         self.assertEqual((ours.wait(60), theirs.poll()), (-signal.SIGKILL, None))
-
-    def wait_for_environment(self, *begun):
-        """Waits until the processes have their own environment, which they get with exec."""
-        for process in begun:
-            while b"sleep" not in pathlib.Path(f"/proc/{process.pid}/cmdline").read_bytes():
-                pass
 
     def end_all(self):
         """Ends what is left of a job with the mark, at once."""

@@ -15,6 +15,7 @@ from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 from supervisor_fixture import Supervised
+from base import process_marks
 from job import bounded_log, job_guard, job_outlet, job_stream, open_mpi, processes
 
 MIB = 1 << 20
@@ -157,7 +158,7 @@ class Guard(unittest.TestCase):
         process, mark = self.begin("trap '' TERM; sleep 1000 & setsid sleep 1000 & echo begun; wait")
         with mock.patch.multiple(processes, ORDERLY_END_SECONDS=0.1, KILL_SECONDS=0.2):
             job_guard.end(process.pid, mark, [])
-        self.assertEqual(processes.marked(mark), [])
+        self.assertEqual(process_marks.marked(mark), [])
         self.assertEqual(process.wait(60), -9)
 
     def test_a_job_that_ends_in_order_is_left_to_it(self):
