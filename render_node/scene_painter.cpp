@@ -191,13 +191,14 @@ void ScenePainter::drawSand(const Pass& pass) {
     prepareSurface(programs.far, pass);
     // The program `near` draws a shadow that is finer than the mesh. It costs a software renderer time at every pixel,
     // so that it is used only within the tool's reach.
-    std::function<void(const shapes::Box&)> choose;
+    ProgramChoice choose;
     bool near = false;
     if (showsTool()) {
-        choose = [&programs, &near, reach = ToolReach(*shown_.tool, sun_)](const shapes::Box& chunk) {
+        choose = [&programs, &near,
+                  reach = ToolReach(*shown_.tool, sun_)](const shapes::Box& chunk) -> const GlProgram& {
             const bool within = reach.meets(chunk);
-            (within ? programs.near : programs.far).use();
             near = near || within;
+            return within ? programs.near : programs.far;
         };
     }
     const DrawnSurface::Drawn drawn = surface_->draw(pass.sceneToPart, culling_, pass.rule, choose);

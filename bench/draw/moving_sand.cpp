@@ -195,6 +195,7 @@ private:
         for (std::size_t i = 0; i < rules_.size(); ++i) {
             drawFrame(*rules_[(i + static_cast<std::size_t>(frame)) % rules_.size()], replica_, change, camera);
         }
+        drawWholeAtRest(camera);
         if (exact_) {
             drawFrame(*exact_, replica_, change, camera);
             const pictures::Image exact = imageOf(exact_->target);
@@ -218,6 +219,7 @@ private:
             }
             rule->bad = rule->compared = 0;
         }
+        wholeMs_.clear();
     }
 
     void report() {
@@ -233,7 +235,9 @@ private:
                        rule.compared > 0 ? fmt::format("{:.2f}", 100 * rule.bad / rule.compared) : "");
         };
         std::ranges::for_each(rules_, [&](const auto& rule) { print(*rule); });
-        fmt::print("whole picture of this sand at rest: {:.2f} ms\n", wholeAtRest());
+        const double whole = quantile(wholeMs_, 0.5);
+        fmt::print("whole picture of this sand at rest: {:.2f} ms; {}: {:.2f} times that\n", whole,
+                   rules_.front()->name, quantile(rules_.front()->ms, 0.5) / whole);
         if (row_.stops) {
             constexpr std::ptrdiff_t kMoving = kStops - kWarmUp;
             const std::vector<double>& ms = rules_.front()->ms;
@@ -243,18 +247,14 @@ private:
         }
     }
 
-    /// Returns the median time of a whole picture of the last sand, as it is drawn at rest [ms].
-    [[nodiscard]] double wholeAtRest() {
+    /// Draws the whole picture of this sand as at rest, from vertices that GL has. In each frame, so that its time can
+    /// be compared on a machine whose speed changes.
+    void drawWholeAtRest(const render_node::Camera& camera) {
         Ruled& rule = *rules_.back();
-        const render_node::Camera camera = cameraAt(kWarmUp + options_.frames - 1);
-        std::vector<double> ms(5);
-        for (double& one : ms) {
-            one = 1e3 * secondsOf([&] {
-                      rule.view.draw(camera, rule.target);
-                      rule.target.finish();
-                  });
-        }
-        return quantile(ms, 0.5);
+        wholeMs_.push_back(1e3 * secondsOf([&] {
+                               rule.view.draw(camera, rule.target);
+                               rule.target.finish();
+                           }));
     }
 
     const Row& row_;
@@ -264,6 +264,7 @@ private:
     walls::Wall wall_;
     glm::dmat4 sceneToRoom_{1};
     std::vector<std::unique_ptr<Ruled>> rules_;  // the last one is that of sand at rest
+    std::vector<double> wholeMs_;                // of the whole picture at rest, per frame
     std::optional<Ruled> exact_;
 };
 

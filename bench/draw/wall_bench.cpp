@@ -43,7 +43,8 @@ void main() { oColour = vec4(vColour, 1.0); })"};
 class BareView {
 public:
     explicit BareView(const scene::Scene& scene)
-        : mesh_(sand::GridData{scene.terrain}, {0, 0, 1}, scene.rules.stepsPerSecond), program_(kBareVertex, {}, kBareFragment) {}
+        : mesh_(sand::GridData{scene.terrain}, {0, 0, 1}, scene.rules.stepsPerSecond),
+          program_(kBareVertex, {}, kBareFragment) {}
 
     void draw(const glm::dmat4& sceneToClip, const render_node::EyeTarget& target) {
         target.bind();

@@ -74,6 +74,12 @@ struct ProgramKind {
     static void destroy(GLuint id) { glDeleteProgram(id); }
 };
 
+/// Returns the size of so many entries of a buffer [byte].
+template <class Entry, class Count>
+GLsizeiptr bytesOf(Count entries) {
+    return static_cast<GLsizeiptr>(entries) * static_cast<GLsizeiptr>(sizeof(Entry));
+}
+
 using GlBuffer = GlHandle<BufferKind>;
 using GlVertexArray = GlHandle<VertexArrayKind>;
 using GlTexture = GlHandle<TextureKind>;

@@ -19,6 +19,9 @@ namespace render_node {
 /// bounds this memory and costs no measurable time.
 class TrianglePace {
 public:
+    /// A software driver begins after so many triangles.
+    static constexpr int kTrianglesPerFlush = 4096;
+
     TrianglePace() {
         const GLubyte* renderer = glGetString(GL_RENDERER);
         software_ =
@@ -41,7 +44,7 @@ public:
     }
 
 private:
-    static constexpr int kTrianglesPerFinish = 32768, kTrianglesPerFlush = 4096;
+    static constexpr int kTrianglesPerFinish = 32768;
     // The other data of one draw call take as much memory as 128 triangles.
     static constexpr int kTrianglesPerDraw = 128;
     bool software_ = false;

@@ -119,6 +119,7 @@ std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface, 
     }
     std::vector<shapes::GridVertex> out;
     const int stride = 1 << levels.level;
+    out.reserve(computedVertices(vertices, {levels.level, {levels.level, levels.level, levels.level, levels.level}}));
     for (int row = vertices.y0; row < vertices.y1; row += stride) {
         for (int column = vertices.x0; column < vertices.x1; column += stride) {
             out.push_back(surface.vertex(column, row));

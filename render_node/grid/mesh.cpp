@@ -11,6 +11,13 @@ namespace {
 
 constexpr int kGroup = 8;  // [chunk], side of a group
 
+/// Returns the number of vertices in a page: a quarter of a megabyte of them, or all vertices of a small field.
+int verticesPerPage(const shapes::ChunkLayout& layout) {
+    constexpr std::int64_t kMost = 1 << 14;
+    const std::int64_t ofChunk = std::int64_t{layout.quadsAcross + 1} * (layout.quadsDown + 1);
+    return static_cast<int>(std::min(kMost, ofChunk * layout.across * layout.down));
+}
+
 }  // namespace
 
 GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun, int stepsPerSecond)
@@ -20,7 +27,8 @@ GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun, int stepsPe
       sharpening_(stepsPerSecond, static_cast<std::size_t>(sand::hashTilesAlong(surface_.columns()) *
                                                            sand::hashTilesAlong(surface_.rows()))),
       tiles_{0, 0, sand::hashTilesAlong(surface_.columns()), sand::hashTilesAlong(surface_.rows())},
-      moving_(static_cast<std::size_t>(tiles_.x1 * tiles_.y1), 0) {
+      moving_(static_cast<std::size_t>(tiles_.x1 * tiles_.y1), 0),
+      pages_(verticesPerPage(layout_)) {
     makeChunks();
     makeGroups();
     ever_ = groups_.front().heights;
@@ -69,18 +77,6 @@ sand::CellRect GridMesh::verticesOver(const sand::CellRect& cells) const {
             end(reached.y1, surface_.rows(), layout_.down * layout_.quadsDown + 1)};
 }
 
-shapes::HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
-                                            std::span<const shapes::GridVertices::Overwritten> overwritten) const {
-    const sand::CellRect cells = surface_.cellsUnder(vertices.grownBy(longestStride()));
-    shapes::HeightRange heights = surface_.heights(cells);
-    for (const auto& [changed, before] : overwritten) {
-        if (!changed.clippedTo(cells).empty()) {
-            heights = around(heights, before);
-        }
-    }
-    return heights;
-}
-
 bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const glm::dmat4>) {
     const auto grid = std::get<sand::GridData>(data);
     const sand::HeightField& field = grid.field;
@@ -99,9 +95,10 @@ bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
     ++revision_;
     std::ranges::for_each(others, [this](int tile) { markMoving(tile); });
     bool rim = false;
-    for (const sand::CellRect& cells : changedParts(overwritten)) {
+    for (const auto& [cells, before] : changedParts(overwritten, shapes::GridVertices::kReach + longestStride())) {
         const sand::CellRect vertices = verticesOver(cells);
-        const shapes::HeightRange heights = heightsAround(vertices, overwritten);
+        // A triangle that reaches these vertices may be higher or lower than they are, now or before the change.
+        const shapes::HeightRange heights = around(heightsUnder(vertices.grownBy(longestStride())), before);
         changes_.add(revision_, {vertices, heights});
         ever_ = around(ever_, heights);
         rim |= surface_.touchesRim(cells);

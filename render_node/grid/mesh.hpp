@@ -3,17 +3,18 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "render_node/gl/gl_handle.hpp"
 #include "render_node/gl/triangle_pace.hpp"
 #include "render_node/grid/chunk_geometry.hpp"
+#include "render_node/grid/index_lists.hpp"
 #include "render_node/grid/levels.hpp"
+#include "render_node/grid/triangle_batch.hpp"
+#include "render_node/grid/vertex_pages.hpp"
 #include "render_node/surface/change_history.hpp"
 #include "render_node/surface/drawn_surface.hpp"
 #include "shapes/grid/chunk_layout.hpp"
@@ -37,9 +38,10 @@ struct ChangedVertices {
 /// Triangles of a height field, in chunks of about 16 × 16 quads, or of 32 × 32 quads if a large field has five levels.
 ///
 /// The time of a software renderer depends on the number of vertices. So only chunks that a camera sees are drawn, each
-/// at the coarsest level that the camera's rule allows. Only these chunks are computed and sent to GL. A chunk is
-/// computed again when the sand in its reach has changed and a camera sees it. If vertices take much memory, the
-/// vertices of chunks that were not drawn lately are removed.
+/// at the coarsest level that the camera's rule allows. Only these chunks are computed and sent to GL. They share
+/// vertex buffers, so that one call draws many of them. A chunk is computed again when the sand in its reach has
+/// changed and a camera sees it. If vertices take much memory, the vertices of chunks that were not drawn lately are
+/// removed.
 class GridMesh final : public DrawnSurface {
 public:
     /// `sun` points towards the sun and has length 1.
@@ -49,7 +51,7 @@ public:
                               std::span<const glm::dmat4> cameras) override;
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-               const std::function<void(const shapes::Box&)>& before) override;
+               const ProgramChoice& choose) override;
     [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) override;
     [[nodiscard]] std::vector<shapes::Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
                                                         const LevelRule& rule) override;
@@ -58,14 +60,13 @@ public:
     [[nodiscard]] shapes::HeightRange heightsEver() const override { return ever_; }
     [[nodiscard]] shapes::SandRim rim() const override { return surface_.rim(); }
     [[nodiscard]] int chunks() const override { return static_cast<int>(chunks_.size()); }
-    [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+    [[nodiscard]] std::size_t bytes() const override { return pages_.bytes() + lists_.bytes(); }
     [[nodiscard]] std::int64_t placesRead() const override { return surface_.placesRead(); }
     [[nodiscard]] Work work() const override { return work_; }
 
 private:
     struct Indices {
-        GlBuffer buffer;
-        int count;
+        int first, count;                           // in lists_
         std::vector<shapes::TriangleBlock> blocks;  // of level 0
     };
     struct Chunk {
@@ -82,6 +83,12 @@ private:
         std::optional<shapes::HoleEdges> holes;  // nullopt if all cells have ground; otherwise the level is 0
         std::optional<Indices> indices;          // of holes, made when the chunk is first drawn
     };
+    /// Vertices and triangles that a drawing shows of a chunk.
+    struct Shown {
+        const Chunk* chunk;
+        const ChunkGeometry* geometry;
+        const Indices* indices;
+    };
     /// Neighbouring chunks that are culled together, so that few chunks are tested one by one.
     struct Group {
         sand::CellRect chunks;  // columns and rows of chunks
@@ -94,10 +101,6 @@ private:
     [[nodiscard]] shapes::HeightRange heightsUnder(const sand::CellRect& vertices) const {
         return surface_.heights(surface_.cellsUnder(vertices));
     }
-    /// Returns the range of heights of all triangles that reach these vertices, now and before the heights were
-    /// overwritten.
-    [[nodiscard]] shapes::HeightRange heightsAround(
-        const sand::CellRect& vertices, std::span<const shapes::GridVertices::Overwritten> overwritten) const;
     [[nodiscard]] sand::CellRect verticesOver(const sand::CellRect& cells) const;
     [[nodiscard]] sand::CellRect chunksAround(const sand::CellRect& vertices) const;
     [[nodiscard]] std::vector<sand::CellRect> changedTiles(
@@ -126,8 +129,9 @@ private:
     [[nodiscard]] ChunkGeometry& geometryOf(Chunk& chunk, const ChunkLevels& levels);
     [[nodiscard]] const Indices& indicesOf(const ChunkLevels& levels);
     [[nodiscard]] const Indices& indicesOf(Chunk& chunk, const ChunkLevels& levels);
-    [[nodiscard]] Indices send(std::span<const std::uint16_t> indices, std::vector<shapes::TriangleBlock> blocks);
-    int drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const;
+    /// Adds the blocks that reach into `frustum`, or all blocks if it is null. Returns the number of triangles.
+    int addTriangles(const Shown& shown, const GlProgram* program, const glm::dmat4* frustum,
+                     TriangleBatch& batch) const;
     void dropUnused();
 
     shapes::GridVertices surface_;
@@ -136,14 +140,16 @@ private:
     std::vector<Chunk> chunks_;  // row by row from the south-west
     std::vector<Group> groups_;
     shapes::Sharpening sharpening_;
-    sand::CellRect tiles_;                    // columns and rows of hash tiles
-    std::vector<std::uint8_t> moving_;        // 1 for each hash tile that counts as moving
-    std::ptrdiff_t movingTiles_ = 0;          // number of these
-    std::map<ChunkLevels, Indices> indices_;  // each index has 16 bits
-    std::size_t bytes_ = 0;
+    sand::CellRect tiles_;              // columns and rows of hash tiles
+    std::vector<std::uint8_t> moving_;  // 1 for each hash tile that counts as moving
+    std::ptrdiff_t movingTiles_ = 0;    // number of these
+    VertexPages pages_;
+    IndexLists lists_;
+    std::map<ChunkLevels, Indices> indices_;
     std::uint64_t revision_ = 0;
     std::uint64_t choice_ = 0;  // number of the current choice of levels; levels are chosen again after it changes
     ChangeHistory<ChangedVertices> changes_;
+    std::vector<Shown> shown_;  // by the current draw()
     TrianglePace pace_;
     Work work_;
     shapes::HeightRange ever_;

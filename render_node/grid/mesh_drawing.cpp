@@ -99,10 +99,8 @@ ChunkGeometry& GridMesh::geometryOf(Chunk& chunk, const ChunkLevels& levels) {
     if (found == chunk.geometries.end()) {
         found = chunk.geometries.emplace(found, chunk.vertices, levels.level);
     }
-    const std::size_t before = found->bytes();
     work_.vertices +=
-        static_cast<std::int64_t>(found->refresh(surface_, levels, chunk.holes ? &*chunk.holes : nullptr));
-    bytes_ += found->bytes() - before;
+        static_cast<std::int64_t>(found->refresh(surface_, levels, chunk.holes ? &*chunk.holes : nullptr, pages_));
     found->used = choice_;
     return *found;
 }
@@ -112,11 +110,12 @@ const GridMesh::Indices& GridMesh::indicesOf(const ChunkLevels& levels) {
     if (found != indices_.end()) {
         return found->second;
     }
-    return indices_
-        .try_emplace(levels, send(trianglesOf(layout_.quadsAcross, layout_.quadsDown, levels),
-                                  levels.level == 0 ? shapes::blocksOf(layout_.quadsAcross, layout_.quadsDown)
-                                                    : std::vector<shapes::TriangleBlock>()))
-        .first->second;
+    const std::vector<std::uint16_t> made = trianglesOf(layout_.quadsAcross, layout_.quadsDown, levels);
+    Indices indices{lists_.add(made), static_cast<int>(made.size()), {}};
+    if (levels.level == 0) {
+        indices.blocks = shapes::blocksOf(layout_.quadsAcross, layout_.quadsDown);
+    }
+    return indices_.emplace(levels, std::move(indices)).first->second;
 }
 
 const GridMesh::Indices& GridMesh::indicesOf(Chunk& chunk, const ChunkLevels& levels) {
@@ -125,21 +124,10 @@ const GridMesh::Indices& GridMesh::indicesOf(Chunk& chunk, const ChunkLevels& le
     }
     if (!chunk.indices) {
         const auto indices = chunk.holes->indices();
-        chunk.indices = send(std::vector<std::uint16_t>(indices.begin(), indices.end()), chunk.holes->blocks());
+        const std::vector<std::uint16_t> made(indices.begin(), indices.end());
+        chunk.indices = {lists_.add(made), static_cast<int>(made.size()), chunk.holes->blocks()};
     }
     return *chunk.indices;
-}
-
-GridMesh::Indices GridMesh::send(std::span<const std::uint16_t> indices, std::vector<shapes::TriangleBlock> blocks) {
-    Indices made{{}, static_cast<int>(indices.size()), std::move(blocks)};
-    // A core profile binds an element buffer only to a vertex array. Any vertex array will do here.
-    const GlVertexArray array;
-    glBindVertexArray(array.id());
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, made.buffer.id());
-    const std::size_t bytes = indices.size_bytes();
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), indices.data(), GL_STATIC_DRAW);
-    bytes_ += bytes;
-    return made;
 }
 
 void GridMesh::prepare(const GlProgram& program) const {
@@ -150,42 +138,43 @@ void GridMesh::prepare(const GlProgram& program) const {
 }
 
 GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-                               const std::function<void(const shapes::Box&)>& before) {
-    Drawn drawn;
+                               const ProgramChoice& choose) {
     ++choice_;
+    shown_.clear();
     visitSeen(sceneToClip, culling, [&](int x, int y) {
         const ChunkLevels levels = levelsOf(x, y, rule);
-        const Indices& indices = indicesOf(chunk(x, y), levels);
-        ChunkGeometry& geometry = geometryOf(chunk(x, y), levels);
-        if (before) {
-            before(boxOf(chunk(x, y).vertices, chunk(x, y).heights));
-        }
-        geometry.bind(indices.buffer.id());
-        const int triangles = drawTriangles(chunk(x, y), indices, culling ? &sceneToClip : nullptr);
-        ++drawn.chunks;
-        drawn.coarseChunks += levels.level > 0 ? 1 : 0;
-        drawn.triangles += triangles;
-        pace_.drawn(triangles);
+        Chunk& seen = chunk(x, y);
+        shown_.push_back({&seen, &geometryOf(seen, levels), &indicesOf(seen, levels)});
     });
+    pages_.send();
+    Drawn drawn;
+    TriangleBatch batch(lists_.buffer(), pace_);
+    for (const Shown& shown : shown_) {
+        const GlProgram* program = choose ? &choose(boxOf(shown.chunk->vertices, shown.chunk->heights)) : nullptr;
+        drawn.triangles += addTriangles(shown, program, culling ? &sceneToClip : nullptr, batch);
+        drawn.coarseChunks += shown.geometry->level() > 0 ? 1 : 0;
+        ++drawn.chunks;
+    }
+    batch.draw();
     dropUnused();
     return drawn;
 }
 
-/// Draws the blocks that reach into `frustum`, or all blocks if it is null. Returns the number of triangles.
-int GridMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const {
-    const auto draw = [](int first, int count) {
-        glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_SHORT,
-                       reinterpret_cast<const void*>(static_cast<std::size_t>(first) * sizeof(std::uint16_t)));
+int GridMesh::addTriangles(const Shown& shown, const GlProgram* program, const glm::dmat4* frustum,
+                           TriangleBatch& batch) const {
+    const auto& [chunk, geometry, indices] = shown;
+    const auto add = [&, vertices = &geometry->range(), begin = indices->first](int first, int count) {
+        batch.add(*vertices, program, begin + first, count);
     };
-    if (frustum == nullptr || indices.blocks.empty()) {
-        draw(0, indices.count);
-        return indices.count / 3;
+    if (frustum == nullptr || indices->blocks.empty()) {
+        add(0, indices->count);
+        return indices->count / 3;
     }
-    int first = 0, count = 0, triangles = 0;  // first and count: adjacent blocks that are not drawn yet
-    for (const shapes::TriangleBlock& block : indices.blocks) {
-        const sand::CellRect vertices{chunk.vertices.x0 + block.quads.x0, chunk.vertices.y0 + block.quads.y0,
-                                      chunk.vertices.x0 + block.quads.x1 + 1, chunk.vertices.y0 + block.quads.y1 + 1};
-        if (!shapes::inFrustum(boxOf(vertices, chunk.heights), *frustum)) {
+    int first = 0, count = 0, triangles = 0;  // first and count: adjacent blocks that are not added yet
+    for (const shapes::TriangleBlock& block : indices->blocks) {
+        const sand::CellRect vertices{chunk->vertices.x0 + block.quads.x0, chunk->vertices.y0 + block.quads.y0,
+                                      chunk->vertices.x0 + block.quads.x1 + 1, chunk->vertices.y0 + block.quads.y1 + 1};
+        if (!shapes::inFrustum(boxOf(vertices, chunk->heights), *frustum)) {
             continue;
         }
         triangles += block.count / 3;
@@ -194,27 +183,24 @@ int GridMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const gl
             continue;
         }
         if (count > 0) {
-            draw(first, count);
+            add(first, count);
         }
         first = block.first;
         count = block.count;
     }
     if (count > 0) {
-        draw(first, count);
+        add(first, count);
     }
     return triangles;
 }
 
 void GridMesh::dropUnused() {
-    if (bytes_ <= kManyBytes) {
+    if (pages_.bytes() <= kManyBytes) {
         return;
     }
     for (Chunk& chunk : chunks_) {
-        std::erase_if(chunk.geometries, [this](const ChunkGeometry& geometry) {
-            const bool unused = geometry.used + kLately < choice_;
-            bytes_ -= unused ? geometry.bytes() : 0;
-            return unused;
-        });
+        std::erase_if(chunk.geometries,
+                      [this](const ChunkGeometry& geometry) { return geometry.used + kLately < choice_; });
     }
 }
 

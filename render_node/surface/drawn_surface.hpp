@@ -20,6 +20,9 @@ namespace render_node {
 /// Level at which each chunk was drawn; −1 if it was out of sight. Empty for a field without levels.
 using DrawnLevels = std::vector<std::int8_t>;
 
+/// Returns the program that draws a chunk with this box.
+using ProgramChoice = std::function<const GlProgram&(const shapes::Box&)>;
+
 /// Surface of the sand in GL, for height fields and TINs. ScenePainter lights it, bounds its changes and draws them.
 ///
 /// All cameras get the same vertices. Used by one thread, with its context current.
@@ -55,10 +58,10 @@ public:
     virtual void prepare(const GlProgram& program) const = 0;
 
     /// Draws the chunks that reach into the frustum of `sceneToClip`, or all chunks if `culling` is false. The frustum
-    /// may be a part of the picture for which `rule` was made. Either the program is in use, or `before` chooses one
+    /// may be a part of the picture for which `rule` was made. Either the program is in use, or `choose` returns one
     /// for the box of each chunk.
     virtual Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-                       const std::function<void(const shapes::Box&)>& before) = 0;
+                       const ProgramChoice& choose) = 0;
     /// Draws the marks of this kind of surface over the wires. `prepare` is called with the program and must set it up.
     virtual void drawMarks(const glm::dmat4& sceneToClip, bool culling,
                            const std::function<void(const GlProgram&)>& prepare) {

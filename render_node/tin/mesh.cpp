@@ -69,11 +69,6 @@ Indices indicesOf(const shapes::TinTriangle& triangle, std::size_t first) {
     return {corner(0), corner(1), corner(2)};
 }
 
-template <class Entry>
-GLsizeiptr bytesOf(std::size_t entries) {
-    return static_cast<GLsizeiptr>(entries * sizeof(Entry));
-}
-
 }  // namespace
 
 TinMesh::TinMesh(const SurfaceView& tin, double cellSize)
@@ -167,14 +162,14 @@ void TinMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit
 }
 
 DrawnSurface::Drawn TinMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule&,
-                                  const std::function<void(const shapes::Box&)>& before) {
+                                  const ProgramChoice& choose) {
     Drawn drawn;
     glBindVertexArray(array_.id());
     visitSeen(sceneToClip, culling, [&](std::size_t i) {
         TinChunk& chunk = surface_.chunks()[i];
         sendTriangles(i);
-        if (before) {
-            before(surface_.boxOf(chunk));
+        if (choose) {
+            choose(surface_.boxOf(chunk)).use();
         }
         ++drawn.chunks;
         const auto seen = [&](const TinChunk::Part& part) {

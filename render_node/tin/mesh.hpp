@@ -26,7 +26,7 @@ public:
                               std::span<const glm::dmat4> cameras) override;
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-               const std::function<void(const shapes::Box&)>& before) override;
+               const ProgramChoice& choose) override;
     /// Draws the constraints.
     void drawMarks(const glm::dmat4& sceneToClip, bool culling,
                    const std::function<void(const GlProgram&)>& prepare) override;

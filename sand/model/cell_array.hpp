@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -13,9 +14,16 @@ struct CellRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
     /// Returns the part of the rectangle that lies in `other`.
-    [[nodiscard]] CellRect clippedTo(const CellRect& other) const;
+    [[nodiscard]] CellRect clippedTo(const CellRect& other) const {
+        return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
+    }
     /// Returns the smallest rectangle that contains both. Ignores an empty rectangle.
-    [[nodiscard]] CellRect joinedWith(const CellRect& other) const;
+    [[nodiscard]] CellRect joinedWith(const CellRect& other) const {
+        if (empty() || other.empty()) {
+            return empty() ? other : *this;
+        }
+        return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
+    }
     /// Returns the rectangle with `margin` more cells on every side.
     [[nodiscard]] CellRect grownBy(int margin) const { return {x0 - margin, y0 - margin, x1 + margin, y1 + margin}; }
     friend bool operator==(const CellRect&, const CellRect&) = default;

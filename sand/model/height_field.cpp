@@ -8,17 +8,6 @@
 
 namespace sand {
 
-CellRect CellRect::clippedTo(const CellRect& other) const {
-    return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
-}
-
-CellRect CellRect::joinedWith(const CellRect& other) const {
-    if (empty() || other.empty()) {
-        return empty() ? other : *this;
-    }
-    return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
-}
-
 namespace {
 
 double checked(int columns, int rows, double cellSize) {

@@ -199,6 +199,10 @@ float GridVertices::along(int vertex, int cells) const {
 glm::vec2 GridVertices::slope(int vertexColumn, int vertexRow) const {
     const int x = std::clamp(vertexColumn - 1, 0, columns_ - 1);
     const int y = std::clamp(vertexRow - 1, 0, rows_ - 1);
+    if (holes_.empty() && x > 0 && x + 1 < columns_ && y > 0 && y + 1 < rows_) {  // most vertices
+        const float* under = heights_.data() + static_cast<std::ptrdiff_t>(y) * columns_ + x;
+        return glm::vec2(under[1] - under[-1], under[columns_] - under[-columns_]) / (2 * cellSize_);
+    }
     // The slope at the rim is one-sided. A field of one column has slope 0 across it.
     const auto rise = [this](float low, float high, int cells) {
         return cells == 0 ? 0.0F : (high - low) / (static_cast<float>(cells) * cellSize_);
@@ -228,8 +232,15 @@ GridVertex GridVertices::vertex(int column, int row) const {
     const int y = std::clamp(row - 1, 0, rows_ - 1);
     const float here = height(x, y);
     float open = 0;
-    openSky({&open, 1}, cellSize_,
-            [&](std::size_t, int east, int north) { return height(x + east, y + north) - here; });
+    const std::span<float> one(&open, 1);
+    if (x >= kReach && x + kReach < columns_ && y >= kReach && y + kReach < rows_) {
+        const float* under = heights_.data() + static_cast<std::ptrdiff_t>(y) * columns_ + x;
+        openSky(one, cellSize_, [under, here, columns = std::ptrdiff_t{columns_}](std::size_t, int east, int north) {
+            return under[north * columns + east] - here;
+        });
+    } else {
+        openSky(one, cellSize_, [&](std::size_t, int east, int north) { return height(x + east, y + north) - here; });
+    }
     return vertexUnder(open, column, row);
 }
 
