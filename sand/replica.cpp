@@ -153,9 +153,7 @@ std::int32_t Replica::wholeOf(const Owed& owed) const {
 bool Replica::restoreKept() {
     try {
         if (canUndo()) {
-            // As a whole: putBackKept() restores what is marked as changed, and a sweep that throws may not have marked
-            // all that it has changed.
-            surface_->replace(*surface_->kept());
+            surface_->putBackKept();
             return true;
         }
     } catch (const std::bad_alloc&) {
@@ -253,12 +251,15 @@ void Replica::press() {
 
 bool Replica::putBack(const Edit& edit) {
     if (edit.kind == Edit::reset) {
+        surface_->forget();  // before the sand changes, so that nothing of it is kept
         surface_->reset();
     } else if (edit.kind == Edit::undo && canUndo()) {
         surface_->putBackKept();
     } else if (edit.kind == Edit::load && edit.sand) {
         try {
-            surface_->replace(*surface_->reader()(*edit.sand));
+            const std::shared_ptr<const SurfaceCopy> loaded = surface_->reader()(*edit.sand);
+            surface_->forget();
+            surface_->replace(*loaded);
             surface_->stopMoving();
         } catch (const base::FormatError& error) {  // in every replica alike
             leftOut_ = std::string("its load was ignored: ") + error.what();
@@ -321,14 +322,13 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     const auto stroke = beforeStroke.empty() ? nullptr : read(beforeStroke);
     const auto sand = read(reader.rest());
     // The statements below throw nothing but std::bad_alloc.
-    if (stroke) {
-        surface_->keep(*stroke);
-    } else {
-        surface_->forget();
-    }
+    surface_->forget();  // before the sand changes, so that nothing of it is kept
     rules_.tuning = head.tuning;
     surface_->changeRules(rules_);
     surface_->replace(*sand);
+    if (stroke) {
+        surface_->keep(*stroke);
+    }
     (void)surface_->hash();  // so that the next step does not count as the one that changed this sand
     surface_->resumeMovement(movement);
     stepNumber_ = head.number;

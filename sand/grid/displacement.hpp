@@ -69,6 +69,11 @@ public:
     Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to,
               bool measures = false) const;
 
+    /// Returns a rectangle that contains all cells of the field that drag() may change. It may contain further cells.
+    [[nodiscard]] CellRect cellsChanged(const HeightField& field, ProbePoint from, ProbePoint to) const {
+        const auto around = [this](const ProbePoint& at) { return shape_.cellsChanged(at.x, at.y); };
+        return around(from).joinedWith(around(to)).clippedTo(field.bounds());
+    }
     /// Returns the obstacle of a tool whose centre is at `probe`.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint probe) const;
     /// Returns the cells of the field that may be below the tool while its centre is at `probe`.

@@ -83,12 +83,19 @@ std::size_t Erosion::bytes() const {
            (active_.capacity() + swept_.capacity()) * sizeof active_[0];
 }
 
-Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle) {
+Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle,
+                              const std::function<void(const CellRect&)>& willChange) {
     wakeTouched();
     std::int64_t outflow = 0;
     for (int n = 0; n < part.sweeps && !settled(); ++n) {
         const float momentum = std::max(momentumAfter<float>(part.first + n, dampingOf(part.whole)),
                                         momentumAfter<float>(undisturbed_, kMostDamping));
+        swept_.clear();
+        std::ranges::transform(active_, std::back_inserter(swept_),
+                               [this](const CellRect& run) { return cellsOf(run); });
+        if (willChange) {
+            std::ranges::for_each(swept_, willChange);
+        }
         outflow += sweepOnce(field, momentum, obstacle);
         markAroundMoved();
         ++sweepsDone_;
@@ -107,11 +114,7 @@ Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const O
 }
 
 std::int64_t Erosion::sweepOnce(HeightField& field, float momentum, const Obstacle* obstacle) {
-    swept_.clear();
-    for (const CellRect& blocks : active_) {
-        swept_.push_back(cellsOf(blocks));
-        refreshGhosts(field, swept_.back());
-    }
+    std::ranges::for_each(swept_, [&field](const CellRect& cells) { refreshGhosts(field, cells); });
     const double ratio = static_cast<double>(rules_.aspect) / kUnitsPerCell;
     const bool holds = obstacle != nullptr && !obstacle->cells.empty() && options_.ground == nullptr;
     const std::optional<HeldFaces> held = holds ? std::optional(HeldFaces{*obstacle}) : std::nullopt;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -64,8 +65,10 @@ public:
     };
     /// Runs the sweeps of `part` over `field`; stops earlier after a sweep in which no sand flows.
     ///
-    /// No flux raises a cell above the underside of `obstacle`, which is null without a tool.
-    Swept sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle = nullptr);
+    /// No flux raises a cell above the underside of `obstacle`, which is null without a tool. Calls
+    /// `willChange(cells)`, unless it is empty, before heights in these cells may change.
+    Swept sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle = nullptr,
+                const std::function<void(const CellRect&)>& willChange = {});
     /// Runs a step of `sweeps` sweeps. Returns the volume that fell over an open rim [unit · cell].
     std::int64_t sweep(HeightField& field, int sweeps, const Obstacle* obstacle = nullptr) {
         return sweep(field, SweepPart::all(sweeps), obstacle).outflow;
@@ -106,7 +109,7 @@ private:
     [[nodiscard]] CellRect cellsOf(const CellRect& blocks) const;
     /// Returns the blocks of `cells` and one more on each side [block].
     [[nodiscard]] CellRect blocksAround(const CellRect& cells) const;
-    /// Makes one sweep over the active blocks. Returns the outflow [unit · cell].
+    /// Makes one sweep over the cells of swept_. Returns the outflow [unit · cell].
     std::int64_t sweepOnce(HeightField& field, float momentum, const Obstacle* obstacle);
     /// Marks the blocks that the next sweep must visit because sand flowed in this sweep.
     void markAroundMoved();

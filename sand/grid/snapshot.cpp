@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/grid/snapshot.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -9,10 +8,6 @@
 
 namespace sand::grid {
 namespace {
-
-constexpr int kTile = 64;  // [cell]
-
-int tilesIn(int cells) { return (cells + kTile - 1) / kTile; }
 
 /// Throws unless volume and outflow are possible for a field whose heights are within ±kMaxHeight.
 void requirePossible(const Snapshot& copy) {
@@ -33,12 +28,6 @@ void requireAbove(const Ground& ground, const HeightField& field) {
                 throw base::FormatError("rock above the sand that lies on it");
             }
         }
-    }
-}
-
-void copyCells(const HeightField& from, const CellRect& cells, HeightField& to) {
-    for (int y = cells.y0; y < cells.y1; ++y) {
-        std::copy(from.row(y) + cells.x0, from.row(y) + cells.x1, to.row(y) + cells.x0);
     }
 }
 
@@ -66,62 +55,6 @@ Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, const SandLimits&
         throw base::FormatError("sand with further bytes behind it");
     }
     return copy;
-}
-
-void Undo::touch(const CellRect& cells) {
-    if (!copy_) {
-        return;
-    }
-    const CellRect inside = cells.clippedTo(copy_->field.bounds());
-    if (inside.empty()) {
-        return;
-    }
-    for (int y = inside.y0 / kTile; y < tilesIn(inside.y1); ++y) {
-        std::fill_n(touched_.begin() + y * tilesAcross_ + inside.x0 / kTile, tilesIn(inside.x1) - inside.x0 / kTile,
-                    std::uint8_t{1});
-    }
-}
-
-std::vector<CellRect> Undo::takeTouched() {
-    std::vector<CellRect> tiles;
-    for (std::size_t i = 0; i < touched_.size(); ++i) {
-        if (std::exchange(touched_[i], std::uint8_t{0}) != 0) {
-            const int x = static_cast<int>(i) % tilesAcross_ * kTile;
-            const int y = static_cast<int>(i) / tilesAcross_ * kTile;
-            tiles.push_back(CellRect{x, y, x + kTile, y + kTile}.clippedTo(copy_->field.bounds()));
-        }
-    }
-    return tiles;
-}
-
-void Undo::keep(const HeightField& field, Inertia inertia, std::int64_t outflow) {
-    if (!copy_) {
-        copy_.emplace(field, std::move(inertia), outflow);
-        tilesAcross_ = tilesIn(field.columns());
-        touched_.assign(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>(tilesIn(field.rows())), 0);
-    } else {
-        for (const CellRect& tile : takeTouched()) {
-            copyCells(field, tile, copy_->field);
-        }
-        copy_->inertia = std::move(inertia);
-        copy_->outflow = outflow;
-    }
-    kept_ = true;
-}
-
-void Undo::keep(const Snapshot& copy) {
-    kept_ = false;  // until all memory is there
-    copy_.reset();
-    keep(copy.field, copy.inertia, copy.outflow);
-    touch(copy_->field.bounds());  // the field may differ from `copy` everywhere
-}
-
-std::vector<CellRect> Undo::putBackHeights(HeightField& field) {
-    std::vector<CellRect> tiles = takeTouched();
-    for (const CellRect& tile : tiles) {
-        copyCells(copy_->field, tile, field);
-    }
-    return tiles;
 }
 
 }  // namespace sand::grid

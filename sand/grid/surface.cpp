@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 
 #include "sand/grid/settle.hpp"
@@ -46,7 +47,6 @@ void GridSurface::touch(const CellRect& cells) {
         return;
     }
     hash_.touch(cells);
-    beforeStroke_.touch(cells);
     if (changed_) {
         changed_->add({cells.x0 / kBlock, cells.y0 / kBlock, blocksFor(cells.x1), blocksFor(cells.y1)});
     }
@@ -72,6 +72,7 @@ SurfaceChange GridSurface::takeChange() {
 void GridSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     const Displacement displacement(tool);
     for (std::size_t i = 1; i < path.size(); ++i) {
+        beforeStroke_.willChange(field_, displacement.cellsChanged(field_, path[i - 1], path[i]));
         const Displacement::Work done =
             displacement.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i], !refused_.first);
         erosion_.touch(done.cells);
@@ -95,7 +96,11 @@ void GridSurface::arrive(const Tool& tool, const ProbePoint& probe) {
 Swept GridSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
     const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, probe);
     const std::int64_t before = erosion_.sweepsDone();
-    const Erosion::Swept swept = erosion_.sweep(field_, part, tool == nullptr ? nullptr : &here);
+    std::function<void(const CellRect&)> willChange;
+    if (beforeStroke_.any()) {
+        willChange = [this](const CellRect& cells) { beforeStroke_.willChange(field_, cells); };
+    }
+    const Erosion::Swept swept = erosion_.sweep(field_, part, tool == nullptr ? nullptr : &here, willChange);
     outflow_ += swept.outflow;
     for (const CellRect& block : erosion_.takeMoved()) {
         touch(block);
@@ -110,6 +115,7 @@ void GridSurface::changeRules(const Rules& rules) {
 }
 
 bool GridSurface::settle() {
+    beforeStroke_.willChange(field_, field_.bounds());
     WorkLimit limit(mostSettlingWork());
     const Settled settled = sand::grid::settle(field_, rules_, nullptr, base::fastestCodePath(), &limit);
     outflow_ += settled.outflow;
@@ -119,6 +125,7 @@ bool GridSurface::settle() {
 }
 
 void GridSurface::reset() {
+    beforeStroke_.willChange(field_, field_.bounds());
     base::ByteReader reader(*start_);
     decodeCells(reader, field_.bounds(), kMaxHeight, field_.cells());
     erosion_.resume({});
@@ -127,15 +134,15 @@ void GridSurface::reset() {
 }
 
 std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
-    return hasKept() ? std::make_shared<const Snapshot>(*beforeStroke_.kept()) : nullptr;
+    return hasKept() ? std::make_shared<const Snapshot>(beforeStroke_.copy(field_)) : nullptr;
 }
 
 void GridSurface::putBackKept() {
     for (const CellRect& tile : beforeStroke_.putBackHeights(field_)) {
         touch(tile);
     }
-    erosion_.resume(beforeStroke_.kept()->inertia);
-    outflow_ = beforeStroke_.kept()->outflow;
+    erosion_.resume(beforeStroke_.inertia());
+    outflow_ = beforeStroke_.outflow();
 }
 
 std::shared_ptr<const SurfaceCopy> GridSurface::copy() const {
@@ -152,6 +159,7 @@ SurfaceReader GridSurface::reader() const {
 
 void GridSurface::replace(const SurfaceCopy& copy) {
     const auto& sand = dynamic_cast<const Snapshot&>(copy);
+    beforeStroke_.willChange(field_, field_.bounds());
     field_ = sand.field;
     erosion_.resume(sand.inertia);
     outflow_ = sand.outflow;
@@ -198,16 +206,16 @@ void GridSurface::corrupt(int column, int row, int bit) {
 
 namespace {
 
-std::int32_t heightAt(const HeightField& field, double x, double y) {
-    const auto cell = [](double place, int cells) {
-        return std::clamp(static_cast<int>(std::floor(place / kProbePerCell)), 0, cells - 1);
-    };
-    return field.height(cell(x, field.columns()), cell(y, field.rows()));
+/// Returns the cell at a place, or the nearest one if the place is outside the field.
+int cellAt(double place /* [probe unit] */, int cells) {
+    return std::clamp(static_cast<int>(std::floor(place / kProbePerCell)), 0, cells - 1);
 }
 
 }  // namespace
 
-double GridSurface::height(double x, double y) const { return heightAt(field_, x, y); }
+double GridSurface::height(double x, double y) const {
+    return field_.height(cellAt(x, field_.columns()), cellAt(y, field_.rows()));
+}
 
 HeightSpan GridSurface::heights() const {
     std::int32_t lowest = field_.height(0, 0), highest = lowest;
@@ -221,8 +229,10 @@ HeightSpan GridSurface::heights() const {
 }
 
 std::optional<double> GridSurface::keptHeight(double x, double y) const {
-    const Snapshot* const kept = beforeStroke_.kept();
-    return kept == nullptr ? std::nullopt : std::optional<double>(heightAt(kept->field, x, y));
+    if (!hasKept()) {
+        return std::nullopt;
+    }
+    return beforeStroke_.height(field_, cellAt(x, field_.columns()), cellAt(y, field_.rows()));
 }
 
 }  // namespace sand::grid

@@ -7,8 +7,8 @@
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/displacement.hpp"
 #include "sand/grid/erosion.hpp"
-#include "sand/grid/snapshot.hpp"
 #include "sand/grid/tile_hash.hpp"
+#include "sand/grid/undo.hpp"
 #include "sand/model/movement.hpp"
 #include "sand/model/surface.hpp"
 
@@ -37,10 +37,10 @@ public:
     void reset() override;
 
     void keep() override { beforeStroke_.keep(field_, erosion_.inertia(), outflow_); }
-    void keep(const SurfaceCopy& copy) override { beforeStroke_.keep(dynamic_cast<const Snapshot&>(copy)); }
+    void keep(const SurfaceCopy& copy) override { beforeStroke_.keep(dynamic_cast<const Snapshot&>(copy), field_); }
     void forget() override { beforeStroke_.forget(); }
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override;
-    [[nodiscard]] bool hasKept() const override { return beforeStroke_.kept() != nullptr; }
+    [[nodiscard]] bool hasKept() const override { return beforeStroke_.any(); }
     void putBackKept() override;
 
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
@@ -70,7 +70,7 @@ public:
     [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
-    /// Records a change of `cells` for hash, undo and takeChange().
+    /// Records a change of `cells` for hash and takeChange(). Before it, the undo must have been told.
     void touch(const CellRect& cells);
     /// Records a change of the whole field.
     void touchAll();

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// An undo restores all cells that were touched, wherever they are among the tiles that it copies.
+// An undo restores all cells that have changed, wherever they are among the tiles that it keeps.
+#include "sand/grid/undo.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <random>
 
-#include "sand/grid/snapshot.hpp"
 #include "sand/grid/tile_hash.hpp"
 #include "sand/replica.hpp"
 #include "tests/support/sand/sand_of.hpp"
 #include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/seed.hpp"
 
 namespace grid_undo {
 namespace {
@@ -44,32 +48,53 @@ void raise(HeightField& field, const CellRect& cells) {
     }
 }
 
-TEST(GridUndo, PutsBackEveryCellOfARectangleThatWasTouched) {
+TEST(GridUndo, PutsBackEveryCellOfARectangleThatHasChanged) {
     std::mt19937 random(5);
     const HeightField before = samples::randomField(kColumns, kRows, 1 << 20, random);
     sand::grid::Undo undo;
     undo.keep(before, {}, 0);
     forEachRect([&](const CellRect& cells) {
         HeightField field = before;
+        undo.willChange(field, cells);
         raise(field, cells);
-        undo.touch(cells);
         (void)undo.putBackHeights(field);
         ASSERT_TRUE(sameHeights(field, before))
             << cells.x0 << ", " << cells.y0 << " to " << cells.x1 << ", " << cells.y1;
     });
 }
 
-TEST(GridUndo, KeepsEveryCellOfARectangleThatWasTouched) {
+// Each rectangle changes on top of the others.
+TEST(GridUndo, KeepsEveryCellOfARectangleThatHasChanged) {
     std::mt19937 random(6);
-    HeightField field = samples::randomField(kColumns, kRows, 1 << 20, random);
+    const HeightField before = samples::randomField(kColumns, kRows, 1 << 20, random);
+    HeightField field = before;
     sand::grid::Undo undo;
     undo.keep(field, {}, 0);
     forEachRect([&](const CellRect& cells) {
+        undo.willChange(field, cells);
         raise(field, cells);
-        undo.touch(cells);
-        undo.keep(field, {}, 0);
-        ASSERT_TRUE(sameHeights(undo.kept()->field, field))
+        ASSERT_TRUE(sameHeights(undo.copy(field).field, before))
             << cells.x0 << ", " << cells.y0 << " to " << cells.x1 << ", " << cells.y1;
+    });
+    for (int row = 0; row < kRows; ++row) {
+        for (int column = 0; column < kColumns; ++column) {
+            ASSERT_EQ(undo.height(field, column, row), before.height(column, row)) << column << ", " << row;
+        }
+    }
+}
+
+TEST(GridUndo, TakesOverSandThatDiffersFromTheField) {
+    std::mt19937 random(8);
+    const HeightField field = samples::randomField(kColumns, kRows, 1 << 20, random);
+    forEachRect([&](const CellRect& cells) {
+        HeightField other = field;
+        raise(other, cells);
+        sand::grid::Undo undo;
+        undo.keep(sand::grid::Snapshot(other, {}, 7), field);
+        HeightField now = field;
+        (void)undo.putBackHeights(now);
+        ASSERT_TRUE(sameHeights(now, other));
+        ASSERT_EQ(undo.outflow(), 7);
     });
 }
 
@@ -88,8 +113,8 @@ TEST(GridHash, TakesEveryCellOfARectangleThatWasTouched) {
     });
 }
 
-// Sand that does not slide changes only where the tool touches it. A slide would hide a tile that was not marked,
-// because it marks the blocks in which it flows.
+// Sand that does not slide changes only where the tool touches it. A slide would hide a tile that was not kept, because
+// a sweep keeps the blocks that it visits.
 TEST(GridUndo, OfAToolAcrossTheBordersOfTilesRestoresSandThatDoesNotSlide) {
     scene::Scene scene = samples::flatScene(kColumns, kRows);
     scene.rules.tuning.threshold = scene.rules.tuning.startThreshold = sand::kLargestThreshold;
@@ -105,6 +130,63 @@ TEST(GridUndo, OfAToolAcrossTheBordersOfTilesRestoresSandThatDoesNotSlide) {
                 ASSERT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain))
                     << column << ", " << row << ", " << beside;
             }
+        }
+    }
+}
+
+/// Returns rock with walls and a hollow, all below the sand of a flat scene.
+std::shared_ptr<sand::Ground> roughGround() {
+    auto ground = std::make_shared<sand::Ground>(kColumns, kRows);
+    for (int y = 0; y < kRows; ++y) {
+        for (int x = 0; x < kColumns; ++x) {
+            ground->setBedrock(x, y, -(2 + (x / 10 + y / 10) % 3) * sand::kUnitsPerCell);
+            if (x == 70 && y % 40 > 5) {
+                ground->setWall(x, y);
+            }
+        }
+    }
+    return ground;
+}
+
+// A tile must be kept before the first sweep, drag or edit that changes it, whatever moves its sand.
+TEST(GridUndo, RestoresTheSandOfARandomStroke) {
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    std::mt19937 random(seed);
+    const auto below = [&random](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+    for (int session = 0; session < 24; ++session) {
+        scene::Scene scene = samples::flatScene(kColumns, kRows);
+        scene.rules.rim = session % 2 == 0 ? sand::Rim::open : sand::Rim::closed;
+        if (session % 3 == 0) {
+            scene.ground = roughGround();
+        } else {
+            scene.terrain = samples::randomField(kColumns, kRows, 6 << 16, random);  // slides from the first step on
+        }
+        sand::Replica replica(scene);
+        const auto step = [&](bool engaged, const sand::Edit& edit = sand::Edit::none) {
+            const sand::ProbePoint probe{below(kColumns * kProbePerCell), below(kRows * kProbePerCell),
+                                         below(6 * kProbePerCell) - 3 * kProbePerCell};
+            replica.apply({0, replica.stepNumber() + 1, engaged, {probe}, edit});
+        };
+        for (int i = below(20); i >= 0; --i) {
+            step(false);
+        }
+        const HeightField before = samples::fieldOf(replica);
+        const std::int64_t outflow = replica.outflow();
+        for (int i = below(12); i >= 0; --i) {
+            step(true, below(6) == 0 ? sand::Edit::tuned(scene.rules.tuning) : sand::Edit::none);
+        }
+        step(false, below(3) == 0 ? sand::Edit{sand::Edit::settle} : sand::Edit::none);
+        for (int i = below(30); i >= 0; --i) {
+            step(false);
+        }
+        sand::Replica joined(scene);
+        joined.decodeState(replica.encodeState());
+        for (sand::Replica* one : {&replica, &joined}) {
+            ASSERT_TRUE(one->canUndo());
+            one->apply({0, one->stepNumber() + 1, false, {}, sand::Edit::undo});
+            ASSERT_TRUE(sameHeights(samples::fieldOf(*one), before)) << "session " << session;
+            ASSERT_EQ(one->outflow(), outflow) << "session " << session;
         }
     }
 }
