@@ -163,9 +163,12 @@ TEST(GridUndo, RestoresTheSandOfARandomStroke) {
             scene.terrain = samples::randomField(kColumns, kRows, 6 << 16, random);  // slides from the first step on
         }
         sand::Replica replica(scene);
+        sand::ProbePoint probe{below(kColumns * kProbePerCell), below(kRows * kProbePerCell), 0};
         const auto step = [&](bool engaged, const sand::Edit& edit = sand::Edit::none) {
-            const sand::ProbePoint probe{below(kColumns * kProbePerCell), below(kRows * kProbePerCell),
-                                         below(6 * kProbePerCell) - 3 * kProbePerCell};
+            // A hand that is slow, because a long drag would keep all tiles.
+            probe = {probe.x + below(4 * kProbePerCell) - 2 * kProbePerCell,
+                     probe.y + below(4 * kProbePerCell) - 2 * kProbePerCell,
+                     below(6 * kProbePerCell) - 3 * kProbePerCell};
             replica.apply({0, replica.stepNumber() + 1, engaged, {probe}, edit});
         };
         for (int i = below(20); i >= 0; --i) {
