@@ -23,6 +23,9 @@ std::string describeScene(const std::string& file) {
     if (const auto cost = scene::stepCostOf(scene)) {
         fmt::format_to(std::back_inserter(text), "{}\n", cost->text(scene));
     }
+    if (const auto tools = scene::largestToolsOf(scene)) {
+        fmt::format_to(std::back_inserter(text), "{}\n", tools->text(scene));
+    }
     return text;
 }
 

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <optional>
+#include <vector>
 
 #include "host/clock.hpp"
 #include "sand/replica.hpp"
@@ -40,11 +43,21 @@ public:
         dragNs_ += moved - began;
         sweepNs_ += ended - moved;
         sweeps_ += replica_.lastWork().sweeps;
+        refused_ |= replica_.refusedPress();
         if (!replica_.holdsTool()) {
             endedNs_ = dragNs_ + sweepNs_;
             whole_ = begun_;
         }
     }
+    /// Digs for a time. Returns how long it took [s].
+    double digFor(double seconds) {
+        const std::int64_t began = host::monotonicNs();
+        do {
+            dig();
+        } while (secondsSince(began) < seconds);
+        return secondsSince(began);
+    }
+    [[nodiscard]] bool wasRefused() const { return refused_; }
     /// Returns the mean of the steps that have run whole. If there is none, the sweeps of the first one are scaled up.
     [[nodiscard]] double secondsOfAStep(std::int32_t sweepsPerStep) const {
         if (whole_ > 0) {
@@ -66,9 +79,24 @@ private:
 
     sand::Replica replica_;
     std::int32_t level_ = 0;  // [probe unit], of the sand in the middle
+    bool refused_ = false;    // whether a press did not fit
     std::int64_t begun_ = 0, whole_ = 0, sweeps_ = 0;
     std::int64_t dragNs_ = 0, sweepNs_ = 0, endedNs_ = 0;  // the last one: of the steps that have run whole
 };
+
+/// Returns how many times as many cells the tool moves on the whole field as on a part, which may be smaller than it.
+double moreOnTheField(const sand::Start& field, const sand::Start& part) {
+    const int width = 2 * part.rules.tuning.tool.radius / sand::kProbePerCell;
+    const auto more = [width](int cells, int ofPart) {
+        return std::max(1.0, static_cast<double>(std::min(cells, width)) / ofPart);
+    };
+    return more(field.rules.columns, part.rules.columns) * more(field.rules.rows, part.rules.rows);
+}
+
+/// Returns two digits of a small number, and a large one in whole.
+std::string shortText(double number) {
+    return number < 10 ? fmt::format("{:.2g}", number) : fmt::format("{:.0f}", number);
+}
 
 }  // namespace
 
@@ -87,27 +115,75 @@ std::optional<StepCost> stepCostOf(const Scene& scene) {
     }
     Digger digger(*part);
     StepCost cost{.columns = part->rules.columns, .rows = part->rules.rows};
-    for (const std::int64_t began = host::monotonicNs(); cost.measured < kSeconds;
-         cost.measured = secondsSince(began)) {
-        digger.dig();
-    }
-    // A tool that is larger than the part moves more cells on the whole field.
-    const auto moved = [&](int cells) {
-        return static_cast<double>(std::min(cells, 2 * scene.rules.tuning.tool.radius / sand::kProbePerCell));
-    };
-    const double more = std::max(1.0, moved(scene.rules.columns) / part->rules.columns) *
-                        std::max(1.0, moved(scene.rules.rows) / part->rules.rows);
-    cost.seconds = digger.secondsOfAStep(scene.rules.tuning.sweepsPerStep) * more;
+    cost.measured = digger.digFor(kSeconds);
+    cost.seconds = digger.secondsOfAStep(scene.rules.tuning.sweepsPerStep) * moreOnTheField(scene, *part);
     return cost;
 }
 
 std::string StepCost::text(const Scene& scene) const {
-    const double ms = seconds * 1e3;
     return fmt::format(
         "a step in which the tool digs takes ≈ {} ms of one core for {} sweeps at most; it was measured for {:.1f} s "
         "on {} x {} cells",
-        ms < 10 ? fmt::format("{:.2g}", ms) : fmt::format("{:.0f}", ms), scene.rules.tuning.sweepsPerStep, measured,
-        columns, rows);
+        shortText(seconds * 1e3), scene.rules.tuning.sweepsPerStep, measured, columns, rows);
+}
+
+std::optional<LargestTools> largestToolsOf(const Scene& scene) {
+    constexpr int kSmallest = 4;          // [cell]
+    constexpr double kSecondsEach = 0.1;  // [s]
+    std::optional<sand::Start> part = scene.middle(kMostCells);
+    if (!part || scene.rules.tuning.tool.radius == 0) {
+        return std::nullopt;
+    }
+    constexpr std::int32_t kLargest = sand::kLargestToolRadius / sand::kProbePerCell;  // [cell]
+    const int largest = std::min({scene.rules.columns / 2, scene.rules.rows / 2, kLargest});
+    std::vector<std::pair<double, double>> measured;
+    for (int cells = kSmallest; cells <= largest; cells *= 2) {
+        Material material = scene.material;
+        material.toolRadius = cells * scene.grid().cellSize;
+        part->rules.tuning = tuningOf(material, scene.grid());
+        Digger digger(*part);
+        (void)digger.digFor(kSecondsEach);
+        if (digger.wasRefused()) {
+            break;
+        }
+        const double seconds = digger.secondsOfAStep(part->rules.tuning.sweepsPerStep) * moreOnTheField(scene, *part);
+        // Noise must not make a larger tool faster.
+        measured.emplace_back(cells, std::max(seconds, measured.empty() ? 0 : measured.back().second));
+        if (seconds > LargestTools::kLongFrame) {
+            break;
+        }
+    }
+    if (measured.empty()) {
+        return std::nullopt;
+    }
+    return LargestTools{.following = radiusAt(0.5 / scene.rules.stepsPerSecond, measured),
+                        .fitting = radiusAt(LargestTools::kLongFrame, measured),
+                        .tried = measured.back().first};
+}
+
+double radiusAt(double seconds, std::span<const std::pair<double, double>> measured) {
+    const auto slower = std::ranges::upper_bound(measured, seconds, {}, &std::pair<double, double>::second);
+    if (slower == measured.begin()) {
+        return 0;
+    }
+    const auto& [radius, time] = *std::prev(slower);
+    if (slower == measured.end() || time <= 0) {
+        return radius;
+    }
+    return radius * std::pow(slower->first / radius, std::log(seconds / time) / std::log(slower->second / time));
+}
+
+std::string LargestTools::text(const Scene& scene) const {
+    const auto upTo = [&](double cells) {
+        if (cells == 0) {
+            return std::string("at no radius of 4 cells or more");
+        }
+        const bool all = cells >= tried;
+        return fmt::format("up to a radius of ≈ {} ({} cells{})", shortText(cells * scene.grid().cellSize),
+                           shortText(cells), all ? ", the largest that was measured" : "");
+    };
+    return fmt::format("this tool follows the hand {}; its step takes at most {:.0f} ms {}", upTo(following),
+                       kLongFrame * 1e3, upTo(fitting));
 }
 
 }  // namespace scene

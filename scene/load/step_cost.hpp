@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "sand/model/probe_point.hpp"
 #include "scene/model/scene.hpp"
@@ -20,6 +22,19 @@ struct StepCost {
     [[nodiscard]] std::string text(const Scene& scene) const;
 };
 
+/// Largest radii of the scene's tool at which a step of digging is fast enough, of one thread of this machine.
+struct LargestTools {
+    static constexpr double kLongFrame = 0.25;  // [s], a step that takes longer can hold a frame for as long
+
+    /// Largest radius at which a step takes at most half of the time between two steps. The other half is for drawing.
+    double following = 0;  // [cell]
+    double fitting = 0;    // [cell], largest radius at which a step takes at most kLongFrame
+    double tried = 0;      // [cell], largest radius that was measured; the two numbers are not above it
+
+    /// Returns one line for the user.
+    [[nodiscard]] std::string text(const Scene& scene) const;
+};
+
 /// Returns where the tool is in step `step` of the measurement, 0 or more. It moves to and fro by a cell a step,
 /// between the middle of the field and 16 cells east of it. It is half a radius deep in sand of the height `level`
 /// [probe unit].
@@ -29,5 +44,14 @@ struct StepCost {
 /// of a step. Returns nullopt for a TIN, whose steps are not measured in parts. Needs memory for a replica of these
 /// cells.
 [[nodiscard]] std::optional<StepCost> stepCostOf(const Scene& scene);
+
+/// Digs as stepCostOf() does, with tools of the scene's kind whose radii double from 4 cells on, and interpolates
+/// between them. Ends at a radius that takes too long, that is half the field, or whose first press does not fit.
+/// Returns nullopt for a TIN and without a tool. Takes about a second.
+[[nodiscard]] std::optional<LargestTools> largestToolsOf(const Scene& scene);
+
+/// Returns the radius at which a step takes `seconds`, between measured radii with rising times. Both grow as powers
+/// of each other between two of them. Returns the largest radius if it takes less, and 0 if the smallest takes more.
+[[nodiscard]] double radiusAt(double seconds, std::span<const std::pair<double, double>> measured /* [cell], [s] */);
 
 }  // namespace scene

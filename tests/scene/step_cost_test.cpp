@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/load/step_cost.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/support/sand/sand_samples.hpp"
 
@@ -32,6 +38,59 @@ TEST(StepCost, IsThatOfAStep) {
     EXPECT_LE(cost->seconds, cost->measured);
     scene.rules.tuning.tool.radius = 0;
     EXPECT_FALSE(scene::stepCostOf(scene).has_value()) << "no tool digs";
+}
+
+// The radius doubles and the time is 16 times as long, so that the time grows with the fourth power between them.
+TEST(LargestTools, AreInterpolatedBetweenMeasuredRadii) {
+    const std::vector<std::pair<double, double>> measured{{8, 0.001}, {16, 0.016}, {32, 0.256}};
+    EXPECT_EQ(scene::radiusAt(0.0005, measured), 0) << "not even the smallest one";
+    EXPECT_NEAR(scene::radiusAt(0.001, measured), 8, 1e-12);
+    EXPECT_NEAR(scene::radiusAt(0.002, measured), 8 * std::pow(2, 0.25), 1e-9);
+    EXPECT_NEAR(scene::radiusAt(0.016, measured), 16, 1e-9);
+    EXPECT_NEAR(scene::radiusAt(0.064, measured), 16 * std::sqrt(2), 1e-9);
+    EXPECT_EQ(scene::radiusAt(1, measured), 32) << "the largest one, which is fast enough";
+    const std::vector<std::pair<double, double>> alike{{4, 0.001}, {8, 0.001}, {16, 0.01}};
+    EXPECT_NEAR(scene::radiusAt(0.001, alike), 8, 1e-12);
+}
+
+// A tool that follows the hand is never larger than one whose step only fits a long frame.
+TEST(LargestTools, AreMeasuredWithTheToolOfTheScene) {
+    scene::Scene scene = samples::flatScene(256, 256);
+    scene.rules.stepsPerSecond = 2;  // a step may take as long as a long frame
+    const auto slow = scene::largestToolsOf(scene);
+    ASSERT_TRUE(slow.has_value());
+    EXPECT_EQ(slow->following, slow->fitting);
+    EXPECT_GE(slow->tried, 4);
+    EXPECT_LE(slow->tried, 128);
+    EXPECT_LE(slow->fitting, slow->tried);
+    scene.rules.stepsPerSecond = 1'000'000;
+    const auto fast = scene::largestToolsOf(scene);
+    ASSERT_TRUE(fast.has_value());
+    EXPECT_EQ(fast->following, 0) << "no tool digs in half a microsecond";
+    EXPECT_GT(fast->fitting, 0);
+    scene.rules.tuning.tool.radius = 0;
+    EXPECT_FALSE(scene::largestToolsOf(scene).has_value()) << "no tool digs";
+}
+
+// A refused press moves no sand, so its step is fast.
+TEST(LargestTools, EndBeforeTheFirstPressThatDoesNotFit) {
+    scene::Scene scene = samples::flatScene(1024, 1024);
+    scene.material.settlingSeconds = 1000;  // four sweeps a step
+    const auto tools = scene::largestToolsOf(scene);
+    ASSERT_TRUE(tools.has_value());
+    EXPECT_LE(tools->tried, 256) << "a radius of 512 cells covers the measured part";
+}
+
+TEST(LargestTools, AreSaidInUnitsOfTheSceneAndInCells) {
+    scene::Scene scene = samples::flatScene(256, 256);
+    const std::string cell = fmt::format("{:.2g}", 10 * scene.terrain.cellSize());
+    EXPECT_EQ((scene::LargestTools{.following = 10, .fitting = 64, .tried = 64}).text(scene),
+              "this tool follows the hand up to a radius of ≈ " + cell +
+                  " (10 cells); its step takes at most 250 ms up to a radius of ≈ " +
+                  fmt::format("{:.2g}", 64 * scene.terrain.cellSize()) + " (64 cells, the largest that was measured)");
+    EXPECT_TRUE((scene::LargestTools{.following = 0, .fitting = 8, .tried = 16})
+                    .text(scene)
+                    .starts_with("this tool follows the hand at no radius of 4 cells or more; "));
 }
 
 }  // namespace

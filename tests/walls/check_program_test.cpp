@@ -56,6 +56,10 @@ TEST(CheckProgram, PrintsWhatAStepOfTheToolCostsAbout) {
                                      "sweeps at most; it was measured for [0-9.]+ s on ") +
                                  part + " cells\n";
         EXPECT_TRUE(std::regex_search(ran.output, std::regex(line))) << ran.output;
+        const std::regex tools(
+            "this tool follows the hand (up to a radius of ≈ [0-9.]+ \\([0-9.]+ cells.*\\)|at no radius of 4 cells or "
+            "more); its step takes at most 250 ms up to a radius of ≈ [0-9.]+ \\([0-9.]+ cells.*\\)\n");
+        EXPECT_TRUE(std::regex_search(ran.output, tools)) << ran.output;
     }
     std::ofstream(scene) << "[field]\ncolumns = 48\n[terrain]\n[tin]\n[material]\n[tool]\nradius = 0.2\n";
     EXPECT_EQ(support::runProgram("sandwall-check", "--scene " + scene.string()).output.find("a step in which"),
