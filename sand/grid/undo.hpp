@@ -14,8 +14,8 @@ namespace sand::grid {
 /// Sand before a stroke, kept for an undo.
 ///
 /// keep() copies no heights. A tile is copied when it first changes after that. So the first step of a stroke on a
-/// large field takes no longer than any other, and the memory is four bytes for each cell of the tiles in which sand
-/// has moved. Not thread-safe.
+/// large field takes no longer than any other. The memory is four bytes for each cell of the tiles in which sand has
+/// moved. Not thread-safe.
 class Undo {
 public:
     static constexpr int kTile = 64;  // side of a tile [cell]
