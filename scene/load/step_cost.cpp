@@ -130,26 +130,28 @@ std::string StepCost::text(const Scene& scene) const {
 std::optional<LargestTools> largestToolsOf(const Scene& scene) {
     constexpr int kSmallest = 4;          // [cell]
     constexpr double kSecondsEach = 0.1;  // [s]
-    std::optional<sand::Start> part = scene.middle(kMostCells);
-    if (!part || scene.rules.tuning.tool.radius == 0) {
+    constexpr double kSecondsInAll = 3;   // [s], after which no larger tool is tried
+    if (scene.rules.tuning.tool.radius == 0) {
         return std::nullopt;
     }
+    const std::int64_t began = host::monotonicNs();
+    sand::Start part = scene.middle(kMostCells).value_or(scene);
     constexpr std::int32_t kLargest = sand::kLargestToolRadius / sand::kProbePerCell;  // [cell]
     const int largest = std::min({scene.rules.columns / 2, scene.rules.rows / 2, kLargest});
     std::vector<std::pair<double, double>> measured;
     for (int cells = kSmallest; cells <= largest; cells *= 2) {
         Material material = scene.material;
         material.toolRadius = cells * scene.grid().cellSize;
-        part->rules.tuning = tuningOf(material, scene.grid());
-        Digger digger(*part);
+        part.rules.tuning = tuningOf(material, scene.grid());
+        Digger digger(part);
         (void)digger.digFor(kSecondsEach);
         if (digger.wasRefused()) {
             break;
         }
-        const double seconds = digger.secondsOfAStep(part->rules.tuning.sweepsPerStep) * moreOnTheField(scene, *part);
+        const double seconds = digger.secondsOfAStep(part.rules.tuning.sweepsPerStep) * moreOnTheField(scene, part);
         // Noise must not make a larger tool faster.
         measured.emplace_back(cells, std::max(seconds, measured.empty() ? 0 : measured.back().second));
-        if (seconds > LargestTools::kLongFrame) {
+        if (seconds > LargestTools::kLongFrame || secondsSince(began) > kSecondsInAll) {
             break;
         }
     }
@@ -182,8 +184,10 @@ std::string LargestTools::text(const Scene& scene) const {
         return fmt::format("up to a radius of ≈ {} ({} cells{})", shortText(cells * scene.grid().cellSize),
                            shortText(cells), all ? ", the largest that was measured" : "");
     };
-    return fmt::format("this tool follows the hand {}; its step takes at most {:.0f} ms {}", upTo(following),
-                       kLongFrame * 1e3, upTo(fitting));
+    const bool spread = scene.rules.stepLimits().mostSweeps > 0;
+    return fmt::format("this tool follows the hand {}; its step takes at most {:.0f} ms {}{}", upTo(following),
+                       kLongFrame * 1e3, upTo(fitting),
+                       spread ? "" : ", and a larger one holds frames, because steps of a TIN are not spread");
 }
 
 }  // namespace scene
