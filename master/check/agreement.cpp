@@ -98,7 +98,7 @@ bool Agreement::healSand(std::uint64_t frame, MasterSand& sand, StepSource& step
     if (healing != lockstep::Healing::ended && !odd.empty() &&
         divergence.judge == lockstep::Divergence::Judge::majority) {
         // Now, because the master's own sand may have been the wrong one, with another step number.
-        decision_ = journal::JournalEnd{sand.replica().stepNumber(), divergence.rightHash};
+        decision_ = {{sand.replica().stepNumber(), divergence.rightHash}, sand.replica().movementDigest()};
     }
     if (std::find(odd.begin(), odd.end(), lockstep::kMaster) != odd.end()) {
         steps.healed(sand.replica());

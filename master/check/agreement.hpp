@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lockstep/rank_statistics.hpp"
+#include "master/check/decision.hpp"
 #include "master/check/ranks.hpp"
 #include "master/journal/keeper.hpp"
 #include "master/measure/incidents.hpp"
@@ -47,7 +48,7 @@ public:
     /// Makes the next reach() give `right` to all ranks, although a majority of them has other sand.
     void overrule(std::unique_ptr<sand::Replica> right) { overruling_ = std::move(right); }
     /// Returns the sand that a majority has decided on since the last call; nullopt if none has.
-    [[nodiscard]] std::optional<journal::JournalEnd> takeDecision() { return std::exchange(decision_, std::nullopt); }
+    [[nodiscard]] std::optional<Decision> takeDecision() { return std::exchange(decision_, std::nullopt); }
     /// Called when the journal has confirmed all decisions so far. A later overrule() then does not concern them.
     void confirmed() { healedInDoubt_.clear(); }
 
@@ -71,7 +72,7 @@ private:
     lockstep::RankStatistics& statistics_;
     const Witness witness_;
     std::unique_ptr<sand::Replica> overruling_;  // the journal's sand, which all ranks must take; usually null
-    std::optional<journal::JournalEnd> decision_;
+    std::optional<Decision> decision_;
     std::vector<int> healedInDoubt_;      // ranks that a majority has healed whose decision is not confirmed
     std::vector<std::uint64_t> strikes_;  // by rank: healings that count against it
     std::uint64_t unhealed_ = 0;

@@ -15,7 +15,8 @@ namespace master {
 JournalCheck::JournalCheck(Record record, std::filesystem::path out, Incidents& incidents)
     : record_(std::move(record)), out_(std::move(out)), incidents_(incidents) {}
 
-void JournalCheck::begin(std::uint64_t frame, const journal::JournalEnd& sand) {
+void JournalCheck::begin(std::uint64_t frame, const Decision& decision) {
+    const journal::JournalEnd& sand = decision.sand;
     if (record_.journal().empty()) {
         return;
     }
@@ -24,6 +25,7 @@ void JournalCheck::begin(std::uint64_t frame, const journal::JournalEnd& sand) {
         return;  // the ranks take the journal's sand soon, whatever they decide now
     }
     majority_ = {frame, sand};
+    movement_ = decision.movement;
     if (replay_) {
         replay_->continueTo(sand.step);  // if the sand is right now, it was right at the decision before
         return;
@@ -46,7 +48,7 @@ std::unique_ptr<sand::Replica> JournalCheck::rightSand(std::uint64_t step) {
         return nullptr;
     }
     const BackgroundReplay::Progress progress = replay_->progress();
-    if (!progress.hash) {
+    if (!progress.proven) {
         return nullptr;
     }
     if (progress.step == step) {
@@ -70,14 +72,16 @@ void JournalCheck::look(std::uint64_t frame, const journal::JournalEnd& shown) {
     const BackgroundReplay::Progress progress = replay_->progress();
     if (!progress.error.empty()) {
         fail(frame, progress.error);
-    } else if (progress.hash && !wrong_) {
-        compare(frame, *progress.hash, shown);
+    } else if (progress.proven && !wrong_) {
+        compare(frame, *progress.proven, shown);
     }
 }
 
-void JournalCheck::compare(std::uint64_t frame, std::uint64_t hash, const journal::JournalEnd& shown) {
-    rightHash_ = hash;
-    if (hash == majority_.sand.hash) {
+void JournalCheck::compare(std::uint64_t frame, const BackgroundReplay::Proven& replayed,
+                           const journal::JournalEnd& shown) {
+    const std::uint64_t hash = rightHash_ = replayed.hash;
+    const bool sameSand = hash == majority_.sand.hash;
+    if (sameSand && replayed.movement == movement_) {
         replay_.reset();
         record_.checked({frame, shown, false});
         report(frame, "agreed", hash,
@@ -86,10 +90,13 @@ void JournalCheck::compare(std::uint64_t frame, std::uint64_t hash, const journa
     }
     wrong_ = true;
     way_ = std::numeric_limits<std::uint64_t>::max();
+    const std::string what =
+        sameSand ? fmt::format("after step {} it had other steps in which its sand moved last", majority_.sand.step)
+                 : fmt::format("after step {} it had {:016x}, the journal has {:016x}", majority_.sand.step,
+                               majority_.sand.hash, hash);
     report(frame, "disagreed", hash,
-           fmt::format("frame {}: the majority of frame {} was wrong: after step {} it had {:016x}, the journal has "
-                       "{:016x}; all ranks will take the sand of the journal",
-                       frame, majority_.frame, majority_.sand.step, majority_.sand.hash, hash));
+           fmt::format("frame {}: the majority of frame {} was wrong: {}; all ranks will take the sand of the journal",
+                       frame, majority_.frame, what));
 }
 
 void JournalCheck::taken(std::uint64_t frame, const journal::JournalEnd& shown) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "master/check/decision.hpp"
 #include "master/journal/background_replay.hpp"
 #include "master/measure/incidents.hpp"
 #include "sand/replica.hpp"
@@ -34,9 +35,9 @@ public:
     /// A replay that fails is begun again, at most so often in all.
     static constexpr int kTries = 3;
 
-    /// Begins to check a majority that has decided in frame `frame` that `sand` is right. Without a journal does
-    /// nothing. All steps up to `sand`.step must be in the journal.
-    void begin(std::uint64_t frame, const journal::JournalEnd& sand);
+    /// Begins to check what a majority has decided in frame `frame`. Without a journal does nothing. All steps up to
+    /// that of the decision must be in the journal.
+    void begin(std::uint64_t frame, const Decision& decision);
     /// Called in every frame before the ranks meet. `step` is the last step of the frame, which is in the journal.
     /// Returns the journal's sand after this step if all ranks must take it; null otherwise.
     [[nodiscard]] std::unique_ptr<sand::Replica> rightSand(std::uint64_t step);
@@ -66,7 +67,7 @@ public:
 
 private:
     void start();
-    void compare(std::uint64_t frame, std::uint64_t hash, const journal::JournalEnd& shown);
+    void compare(std::uint64_t frame, const BackgroundReplay::Proven& replayed, const journal::JournalEnd& shown);
     void fail(std::uint64_t frame, const std::string& error);
     void report(std::uint64_t frame, const char* state, std::uint64_t rightHash, const std::string& line) const;
 
@@ -74,6 +75,7 @@ private:
     const std::filesystem::path out_;
     Incidents& incidents_;
     journal::JournalDoubt majority_;  // its latest decision
+    std::uint64_t movement_ = 0;      // of the same decision
     std::unique_ptr<BackgroundReplay> replay_;
     bool wrong_ = false;           // the journal disagrees with majority_
     std::uint64_t rightHash_ = 0;  // after the step of majority_

@@ -10,16 +10,16 @@
 namespace master {
 namespace {
 
-/// Returns the state hash, computed again from all memory. Throws std::runtime_error if the memory of the replay itself
+/// Returns the hashes, computed again from all memory. Throws std::runtime_error if the memory of the replay itself
 /// is corrupt, because such a replay must not outvote a majority.
-std::uint64_t provenHash(RestoredSand& restored) {
+BackgroundReplay::Proven proven(RestoredSand& restored) {
     sand::Replica& sand = restored.replica;
     const std::uint64_t hash = sand.stateHash();
     sand.audit(sand.hashTiles().tileCount());
     if (sand.stateHash() != hash || sand.volume() + sand.outflow() != restored.volume) {
         throw std::runtime_error("the replayed sand is not the sum of its steps: its memory may be faulty");
     }
-    return hash;
+    return {hash, sand.movementDigest()};
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ void BackgroundReplay::continueTo(std::uint64_t step) {
         const std::lock_guard lock(mutex_);
         if (step > wanted_) {
             wanted_ = step;
-            progress_.hash.reset();
+            progress_.proven.reset();
         }
     }
     wake_.notify_all();
@@ -62,12 +62,12 @@ std::unique_ptr<sand::Replica> BackgroundReplay::take() {
 }
 
 std::uint64_t BackgroundReplay::awaitNext(RestoredSand& restored) {
-    const std::uint64_t hash = provenHash(restored);
+    const Proven hashes = proven(restored);
     const std::uint64_t step = restored.replica.stepNumber();
     std::unique_lock lock(mutex_);
     progress_.step = step;
     if (wanted_ == step) {
-        progress_.hash = hash;
+        progress_.proven = hashes;
     }
     wake_.wait(lock, [&] { return stopping_ || wanted_ != step; });
     return wanted_;

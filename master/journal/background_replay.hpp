@@ -30,10 +30,14 @@ public:
     /// Continues to step `step`, which must be in the journal on disk and must not be less than the step before.
     void continueTo(std::uint64_t step);
 
+    /// What the replay has computed twice from memory.
+    struct Proven {
+        std::uint64_t hash = 0, movement = 0;  // Replica::stateHash(), Replica::movementDigest()
+    };
     struct Progress {
-        std::uint64_t step = 0;             // last step that has been replayed
-        std::optional<std::uint64_t> hash;  // state hash after the wanted step, if the replay has reached it
-        std::string error;                  // text that says why the replay has failed; empty if it has not
+        std::uint64_t step = 0;        // last step that has been replayed
+        std::optional<Proven> proven;  // after the wanted step, if the replay has reached it
+        std::string error;             // text that says why the replay has failed; empty if it has not
     };
     [[nodiscard]] Progress progress() const;
     /// Returns the sand after the wanted step, which the replay must have reached. Ends the replay.

@@ -101,11 +101,13 @@ TEST_F(Healing, LeavesNoTraceInPicturesAndSand) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/failure.json"));
 }
 
-// The digging has moved the sand there before the fault. Without the healing, rank 2 would draw another level later.
+// The hand never digs in this hash tile, and its sand has come to rest. A step that moves it would overwrite the fault
+// before it is found.
 TEST_F(Healing, FindsAndHealsMovementThatDiffers) {
     const std::string wallFile = wall(1, 2);
     ASSERT_EQ(dig(wallFile, {}, "undisturbed").status, 0);
-    const Ended ended = dig(wallFile, {"movement:rank=2,frame=30,column=64,row=64", "movement:rank=0,frame=45"}, "out");
+    const Ended ended = dig(
+        wallFile, {"movement:rank=2,frame=30,column=5,row=120", "movement:rank=0,frame=45,column=5,row=120"}, "out");
     ASSERT_EQ(ended.status, 0) << ended.output;
     EXPECT_NE(ended.output.find("only in the steps in which its sand moved last"), std::string::npos) << ended.output;
     expectHealed(ended, {{"frame", 30}, {"rank", 2}, {"source", "rank"}, {"source_rank", 0}, {"times", 1}});
@@ -118,14 +120,14 @@ TEST_F(Healing, FindsAndHealsMovementThatDiffers) {
 // is.
 TEST_F(Healing, OfMovementNeedsNoMajority) {
     const std::string wallFile = wall(1, 1);
-    const std::string fault = "movement:rank=1,frame=10,column=64,row=64";
+    const std::string fault = "movement:rank=1,frame=30,column=5,row=120";
     for (const auto& [journal, judge] : {std::pair{"required", "journal"}, {"off", "master"}}) {
         const Ended ended =
             runToEnd({"--wall", wallFile, "--scene", scene(), "--device", "script:gis", "--pace", "fast", "--steps",
-                      "80", "--out", out(), "--journal", journal, "--inject", fault});
+                      "300", "--out", out(), "--journal", journal, "--inject", fault});
         ASSERT_EQ(ended.status, 0) << ended.output;
-        EXPECT_TRUE(ended.has("divergence", {{"frame", 10}, {"judge", judge}, {"agreeing", 1}})) << ended.output;
-        expectHealed(ended, {{"frame", 10}, {"rank", 1}, {"source", "rank"}, {"source_rank", 0}});
+        EXPECT_TRUE(ended.has("divergence", {{"frame", 30}, {"judge", judge}, {"agreeing", 1}})) << ended.output;
+        expectHealed(ended, {{"frame", 30}, {"rank", 1}, {"source", "rank"}, {"source_rank", 0}});
         EXPECT_EQ(summary()["divergences"], 1);
     }
 }
@@ -201,6 +203,24 @@ TEST_F(Healing, LetsTheJournalOutvoteAMajority) {
     expectEqualPictures("undisturbed", "out");
     const support::Ran verified = support::runProgram("sandwall-replay", out() + "/session.journal --verify");
     EXPECT_EQ(verified.status, 0) << verified.output;
+}
+
+// The sand of both render ranks is right.
+TEST_F(Healing, LetsTheJournalOutvoteAMajorityWhoseMovementAloneIsWrong) {
+    const std::string wallFile = wall(1, 2);
+    ASSERT_EQ(dig(wallFile, {}, "undisturbed").status, 0);
+    const Ended ended = dig(
+        wallFile, {"movement:rank=1,frame=30,column=5,row=120", "movement:rank=2,frame=30,column=5,row=120"}, "out");
+    EXPECT_EQ(ended.status, 0) << ended.output;
+    expectHealed(ended, {{"frame", 30}, {"rank", 0}, {"source", "rank"}, {"source_rank", 1}});
+    EXPECT_TRUE(ended.has("journal_check", {{"state", "disagreed"}})) << ended.output;
+    EXPECT_NE(ended.output.find("it had other steps in which its sand moved last"), std::string::npos) << ended.output;
+    for (const int rank : {0, 1, 2}) {
+        expectHealed(ended, {{"rank", rank}, {"source", "journal"}, {"times", rank == 0 ? 0 : 1}});
+    }
+    EXPECT_EQ(summary()["outvoted"], 1);
+    EXPECT_EQ(summary()["state_hash"], json("undisturbed/summary.json")["state_hash"]);
+    expectEqualPictures("undisturbed", "out");
 }
 
 // The session is killed while the wall shows the sand of the wrong majority, and is resumed.

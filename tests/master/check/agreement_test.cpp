@@ -215,7 +215,7 @@ TEST_F(AgreementTest, AMajorityDecidesUntilTheJournalOutvotesIt) {
     EXPECT_NE(sand_.hash(), right_) << "the master was right, and has taken the sand of the majority";
     const auto decided = agreement_.takeDecision();
     ASSERT_TRUE(decided.has_value());
-    EXPECT_EQ(decided->hash, sand_.hash());
+    EXPECT_EQ(decided->sand.hash, sand_.hash());
     EXPECT_FALSE(agreement_.takeDecision().has_value());
 
     agreement_.overrule(std::make_unique<sand::Replica>(sceneOfRanks()));
@@ -236,8 +236,8 @@ TEST_F(AgreementTest, TheDecisionOfAMajorityIsAboutTheSandAfterHealing) {
     EXPECT_TRUE(reach());
     const auto decided = agreement_.takeDecision();
     ASSERT_TRUE(decided.has_value());
-    EXPECT_EQ(decided->step, 0U) << "the master's own sand was the wrong one";
-    EXPECT_EQ(decided->hash, right_);
+    EXPECT_EQ(decided->sand.step, 0U) << "the master's own sand was the wrong one";
+    EXPECT_EQ(decided->sand.hash, right_);
 }
 
 TEST_F(AgreementTest, ARankThatIsGivenUpIsNoDecision) {

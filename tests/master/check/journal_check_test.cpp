@@ -38,8 +38,10 @@ protected:
         wall_.corrupt(3, 4, 12);
         wall_.audit(wall_.hashTiles().tileCount());
     }
+    /// Makes only the movement of the wall differ from the journal's.
+    void spoilMovement() { wall_.corruptMovement(3, 4); }
     [[nodiscard]] journal::JournalEnd shown() { return {wall_.stepNumber(), wall_.stateHash()}; }
-    void decide() { check_.begin(frame_, shown()); }
+    void decide() { check_.begin(frame_, {shown(), wall_.movementDigest()}); }
     /// Shows frames until the check is over, and returns the sand that the ranks must take. Shows a step in each frame
     /// while the check lets it.
     std::unique_ptr<sand::Replica> follow() {
@@ -130,6 +132,20 @@ TEST_F(Check, TheJournalOutvotesAMajorityThatIsWrong) {
     EXPECT_EQ(master::restoreSand(journal(), replayed.stepNumber()).replica.stateHash(), replica_.stateHash());
 }
 
+// The heights are right, so that the hash does not tell.
+TEST_F(Check, TheJournalOutvotesAMajorityWhoseMovementAloneIsWrong) {
+    showFrames(20);
+    spoilMovement();
+    decide();
+    const std::unique_ptr<sand::Replica> right = follow();
+    ASSERT_NE(right, nullptr);
+    EXPECT_EQ(right->movementDigest(), replica_.movementDigest());
+    EXPECT_EQ(right->stateHash(), wall_.stateHash());
+    wall_ = *right;
+    check_.taken(frame_, shown());
+    EXPECT_EQ(incidents_.outvoted, 1U);
+}
+
 // The session is killed between the wrong decision and the end of the check.
 TEST_F(Check, AResumedSessionTakesTheSandOfTheJournalAndNamesTheMajority) {
     showFrames(20);
@@ -202,7 +218,7 @@ TEST_F(Check, AJournalThatCannotBeReplayedConfirmsNothing) {
 
 TEST_F(Check, OfALaterDecisionEndsTheDoubtOfAnEarlierOne) {
     showFrames(20);
-    const journal::JournalEnd sand = shown();
+    const master::Decision decided{shown(), wall_.movementDigest()};
     const std::uint64_t frame = frame_;
     keeper_.reset();
     std::filesystem::create_directory(folder_ / "other");
@@ -212,7 +228,7 @@ TEST_F(Check, OfALaterDecisionEndsTheDoubtOfAnEarlierOne) {
     EXPECT_EQ(follow(), nullptr);
     ASSERT_TRUE(check_.failed());
     std::filesystem::rename(folder_ / "away", journal());
-    check_.begin(frame, sand);
+    check_.begin(frame, decided);
     EXPECT_EQ(follow(), nullptr);
     EXPECT_FALSE(check_.failed()) << check_.doubt();
 }
