@@ -99,10 +99,11 @@ void Replica::skip(const Step& step, const ToolState& before, const char* why) {
     leftOut_ = std::string("skipped: ") + why;
     stepNumber_ = step.number;
     // The sand may be half changed, and holds no copy of itself from before the step.
-    if (!restoreKept()) {
+    const bool restored = restoreKept();
+    surface_->forget();
+    if (!restored) {
         surface_->reset();
     }
-    surface_->forget();
     rules_.tuning = before.tuning;
     surface_->changeRules(rules_);
     probe_ = before.probe;

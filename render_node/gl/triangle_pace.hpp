@@ -19,7 +19,7 @@ namespace render_node {
 /// bounds this memory and costs no measurable time.
 class TrianglePace {
 public:
-    /// A software driver begins after so many triangles.
+    /// drawn() flushes after so many triangles, so that a software driver begins.
     static constexpr int kTrianglesPerFlush = 4096;
 
     TrianglePace() {

@@ -2,7 +2,6 @@
 #include "render_node/grid/index_lists.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace render_node {
 
@@ -11,7 +10,7 @@ int IndexLists::add(std::span<const std::uint16_t> indices) {
     if (first + indices.size() > capacity_) {
         grow(first + indices.size());
     }
-    // The name of this target keeps every vertex array as it is.
+    // Binding to this target changes no vertex array.
     glBindBuffer(GL_COPY_WRITE_BUFFER, buffer_.id());
     glBufferSubData(GL_COPY_WRITE_BUFFER, bytesOf<std::uint16_t>(first), bytesOf<std::uint16_t>(indices.size()),
                     indices.data());
@@ -20,15 +19,19 @@ int IndexLists::add(std::span<const std::uint16_t> indices) {
 }
 
 void IndexLists::grow(std::size_t needed) {
+    const auto kept = bytesOf<std::uint16_t>(count_);
+    const GlBuffer copy;
+    glBindBuffer(GL_COPY_READ_BUFFER, copy.id());
+    glBufferData(GL_COPY_READ_BUFFER, kept, nullptr, GL_STREAM_COPY);
+    glBindBuffer(GL_COPY_WRITE_BUFFER, buffer_.id());
+    if (count_ > 0) {
+        glCopyBufferSubData(GL_COPY_WRITE_BUFFER, GL_COPY_READ_BUFFER, 0, 0, kept);
+    }
     capacity_ = std::max(needed, capacity_ + capacity_ / 2);
-    GlBuffer grown;
-    glBindBuffer(GL_COPY_WRITE_BUFFER, grown.id());
     glBufferData(GL_COPY_WRITE_BUFFER, bytesOf<std::uint16_t>(capacity_), nullptr, GL_STATIC_DRAW);
     if (count_ > 0) {
-        glBindBuffer(GL_COPY_READ_BUFFER, buffer_.id());
-        glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, bytesOf<std::uint16_t>(count_));
+        glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, kept);
     }
-    std::swap(buffer_, grown);
 }
 
 }  // namespace render_node

@@ -16,8 +16,9 @@ namespace render_node {
 /// Used by one thread, with its context current.
 class IndexLists {
 public:
-    /// Copies indices to GL. Returns the place of the first one in the buffer. buffer() may change.
+    /// Copies indices to GL. Returns the place of the first one in the buffer.
     [[nodiscard]] int add(std::span<const std::uint16_t> indices);
+    /// Returns the buffer, which stays the same while it grows: vertex arrays hold it.
     [[nodiscard]] GLuint buffer() const { return buffer_.id(); }
     [[nodiscard]] std::size_t bytes() const { return capacity_ * sizeof(std::uint16_t); }
 

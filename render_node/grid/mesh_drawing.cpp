@@ -195,7 +195,7 @@ int GridMesh::addTriangles(const Shown& shown, const GlProgram* program, const g
 }
 
 void GridMesh::dropUnused() {
-    if (pages_.bytes() <= kManyBytes) {
+    if (pages_.usedBytes() <= kManyBytes) {
         return;
     }
     for (Chunk& chunk : chunks_) {

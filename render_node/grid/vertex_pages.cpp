@@ -30,7 +30,7 @@ void describeVertex() {
 
 class VertexPages::Page {
 public:
-    explicit Page(int count) : places(count), count_(count) {
+    Page(int count, std::shared_ptr<std::int64_t> used) : places_(count), count_(count), used_(std::move(used)) {
         glBindVertexArray(array_.id());
         glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
         glBufferData(GL_ARRAY_BUFFER, bytesOf<shapes::GridVertex>(count), nullptr, GL_DYNAMIC_DRAW);
@@ -53,10 +53,25 @@ public:
 
     [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(count_) * sizeof(shapes::GridVertex); }
 
-    FreeRanges places;
+    [[nodiscard]] std::optional<int> take(int count) {
+        if (count > mostFree_) {
+            return std::nullopt;  // without a search, because most pages are full
+        }
+        const std::optional<int> first = places_.take(count);
+        mostFree_ = first ? mostFree_ : count - 1;
+        *used_ += first ? count : 0;
+        return first;
+    }
+    void giveBack(int first, int count) {
+        places_.giveBack(first, count);
+        mostFree_ = count_;
+        *used_ -= count;
+    }
 
 private:
-    int count_;
+    FreeRanges places_;
+    int count_, mostFree_ = count_;       // no free range is longer than mostFree_
+    std::shared_ptr<std::int64_t> used_;  // vertices of all ranges of all pages
     GlVertexArray array_;
     GlBuffer buffer_;
     GLuint indices_ = 0;
@@ -77,7 +92,7 @@ VertexPages::Range& VertexPages::Range::operator=(Range&& other) noexcept {
 
 VertexPages::Range::~Range() {
     if (page_) {
-        page_->places.giveBack(first_, count_);
+        page_->giveBack(first_, count_);
     }
 }
 
@@ -87,13 +102,13 @@ VertexPages::Range VertexPages::allocate(int count) {
     std::erase_if(pages_, [](const std::weak_ptr<Page>& page) { return page.expired(); });
     for (const std::weak_ptr<Page>& known : pages_) {
         const std::shared_ptr<Page> page = known.lock();
-        if (const std::optional<int> first = page->places.take(count)) {
+        if (const std::optional<int> first = page->take(count)) {
             return {page, *first, count};
         }
     }
-    const auto page = std::make_shared<Page>(std::max(count, perPage_));
+    const auto page = std::make_shared<Page>(std::max(count, perPage_), used_);
     pages_.push_back(page);
-    return {page, page->places.take(count).value(), count};
+    return {page, page->take(count).value(), count};
 }
 
 void VertexPages::write(const Range& range, int offset, std::span<const shapes::GridVertex> vertices) {

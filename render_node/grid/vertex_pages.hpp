@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -19,7 +20,7 @@ class VertexPages {
     class Page;
 
 public:
-    /// Vertices in one page. They belong to this object until it is destroyed. The last object in a page deletes it.
+    /// Vertices in one page. They belong to this object until it is destroyed. A page is deleted with its last range.
     class Range {
     public:
         Range() = default;
@@ -50,9 +51,14 @@ public:
     void send();
     /// Returns the memory of all pages [byte].
     [[nodiscard]] std::size_t bytes() const;
+    /// Returns the memory of all ranges [byte].
+    [[nodiscard]] std::size_t usedBytes() const {
+        return static_cast<std::size_t>(*used_) * sizeof(shapes::GridVertex);
+    }
 
 private:
     int perPage_;
+    std::shared_ptr<std::int64_t> used_ = std::make_shared<std::int64_t>(0);  // vertices of all ranges
     std::vector<std::weak_ptr<Page>> pages_;
     // Vertices that are not sent yet, and the place of the first one.
     std::shared_ptr<Page> unsentPage_;

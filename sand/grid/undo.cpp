@@ -41,19 +41,23 @@ void Undo::Kept::putInto(HeightField& field) const {
 }
 
 void Undo::keep(const HeightField& field, Inertia inertia, std::int64_t outflow) {
-    const int across = tilesIn(field.columns());
-    kept_ = Kept{std::move(inertia), outflow, across, {}};
-    kept_->tiles.resize(static_cast<std::size_t>(across) * static_cast<std::size_t>(tilesIn(field.rows())));
+    kept_.reset();  // until all memory is there
+    Kept kept{std::move(inertia), outflow, tilesIn(field.columns()), {}};
+    kept.tiles.resize(static_cast<std::size_t>(kept.tilesAcross) * static_cast<std::size_t>(tilesIn(field.rows())));
+    kept_ = std::move(kept);
 }
 
 void Undo::keep(const Snapshot& copy, const HeightField& field) {
     keep(field, copy.inertia, copy.outflow);
-    for (std::size_t tile = 0; tile < kept_->tiles.size(); ++tile) {
-        const CellRect cells = kept_->cellsOf(tile, field);
+    Kept kept = std::move(*kept_);
+    kept_.reset();
+    for (std::size_t tile = 0; tile < kept.tiles.size(); ++tile) {
+        const CellRect cells = kept.cellsOf(tile, field);
         if (std::vector<std::int32_t> heights = heightsOf(copy.field, cells); heights != heightsOf(field, cells)) {
-            kept_->tiles[tile] = std::move(heights);
+            kept.tiles[tile] = std::move(heights);
         }
     }
+    kept_ = std::move(kept);
 }
 
 void Undo::willChange(const HeightField& field, const CellRect& cells) {

@@ -13,9 +13,9 @@ namespace sand::grid {
 
 /// Sand before a stroke, kept for an undo.
 ///
-/// keep() copies no heights. A tile is copied when it first changes after that. So the first step of a stroke on a
-/// large field takes no longer than any other. The memory is four bytes for each cell of the tiles in which sand has
-/// moved. Not thread-safe.
+/// keep() copies no heights. A tile is copied before a drag, a sweep or an edit first visits it after that. So the
+/// first step of a stroke on a large field takes no longer than any other. The memory is four bytes for each cell of
+/// these tiles. After a change of the rules and after resume(), a sweep visits all tiles once. Not thread-safe.
 class Undo {
 public:
     static constexpr int kTile = 64;  // side of a tile [cell]

@@ -184,10 +184,10 @@ std::string LargestTools::text(const Scene& scene) const {
         return fmt::format("up to a radius of ≈ {} ({} cells{})", shortText(cells * scene.grid().cellSize),
                            shortText(cells), all ? ", the largest that was measured" : "");
     };
-    const bool spread = scene.rules.stepLimits().mostSweeps > 0;
+    const bool holds = scene.rules.stepLimits().mostSweeps == 0 && fitting < tried;
     return fmt::format("this tool follows the hand {}; its step takes at most {:.0f} ms {}{}", upTo(following),
                        kLongFrame * 1e3, upTo(fitting),
-                       spread ? "" : ", and a larger one holds frames, because steps of a TIN are not spread");
+                       holds ? ", and a larger one holds frames, because steps of a TIN are not spread" : "");
 }
 
 }  // namespace scene

@@ -91,6 +91,11 @@ TEST(LargestTools, AreSaidInUnitsOfTheSceneAndInCells) {
     EXPECT_TRUE((scene::LargestTools{.following = 0, .fitting = 8, .tried = 16})
                     .text(scene)
                     .starts_with("this tool follows the hand at no radius of 4 cells or more; "));
+    scene.rules.tin = 1;
+    const std::string held = ", and a larger one holds frames, because steps of a TIN are not spread";
+    EXPECT_TRUE((scene::LargestTools{.following = 4, .fitting = 8, .tried = 16}).text(scene).ends_with(held));
+    EXPECT_FALSE((scene::LargestTools{.following = 4, .fitting = 16, .tried = 16}).text(scene).ends_with(held))
+        << "no larger one was measured";
 }
 
 }  // namespace

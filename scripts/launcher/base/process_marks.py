@@ -7,6 +7,7 @@ import time
 
 # Places among the words behind the name in /proc/PID/stat: startcode, env_start and env_end of proc(5).
 CODE, ENVIRONMENT_BEGIN, ENVIRONMENT_END = 23, 47, 48
+EMPTY_SECONDS = 1  # after which an environment counts as empty; a program may have unmapped it
 
 
 def marked(mark):
@@ -32,7 +33,8 @@ def environment_of(process):
     that was opened before and is read after that seems empty, too. The kernel sets the start of the code last. With it, equal
     addresses of the start and the end tell that an environment is really empty.
     """
-    while not (text := (process / "environ").read_bytes()):
+    deadline = time.monotonic() + EMPTY_SECONDS
+    while not (text := (process / "environ").read_bytes()) and time.monotonic() < deadline:
         (process / "exe").readlink()  # throws for threads of the kernel and for processes that have ended
         numbers = (process / "stat").read_text().rpartition(")")[2].split()
         if int(numbers[CODE]) != 0 and numbers[ENVIRONMENT_BEGIN] == numbers[ENVIRONMENT_END]:
