@@ -211,6 +211,7 @@ std::vector<base::Bytes> Cluster::gather(const base::Bytes& mine) const {
 
 void Cluster::abort(int status) const {
     watchdog_->arm();
+    reserve_.reset();
     MPI_Abort(MPI_COMM_WORLD, status);
     std::_Exit(status);
 }

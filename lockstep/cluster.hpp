@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -95,6 +96,10 @@ private:
     mutable std::vector<std::string> names_;
     mutable LastWords lastWords_;
     std::unique_ptr<Watchdog> watchdog_;
+    /// MPI_Abort needs memory to name the rank. Without any it would end the process with a status of its own, after
+    /// which no session goes on. Small enough that malloc() takes it from the heap.
+    static constexpr std::size_t kReserve = 1 << 16;  // [byte]
+    mutable std::unique_ptr<std::byte[]> reserve_ = std::make_unique<std::byte[]>(kReserve);
     std::vector<RankHost> hosts_;
     std::unique_ptr<HostBells> bells_;
     MPI_Comm frames_ = MPI_COMM_NULL;

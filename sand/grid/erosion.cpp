@@ -91,10 +91,11 @@ Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const O
         const float momentum = std::max(momentumAfter<float>(part.first + n, dampingOf(part.whole)),
                                         momentumAfter<float>(undisturbed_, kMostDamping));
         swept_.clear();
-        std::ranges::transform(active_, std::back_inserter(swept_),
-                               [this](const CellRect& run) { return cellsOf(run); });
+        for (const CellRect& run : active_) {
+            swept_.push_back(cellsOf(run));
+        }
         if (willChange) {
-            std::ranges::for_each(swept_, willChange);
+            std::for_each(swept_.begin(), swept_.end(), willChange);
         }
         outflow += sweepOnce(field, momentum, obstacle);
         markAroundMoved();
@@ -114,7 +115,9 @@ Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const O
 }
 
 std::int64_t Erosion::sweepOnce(HeightField& field, float momentum, const Obstacle* obstacle) {
-    std::ranges::for_each(swept_, [&field](const CellRect& cells) { refreshGhosts(field, cells); });
+    for (const CellRect& cells : swept_) {
+        refreshGhosts(field, cells);
+    }
     const double ratio = static_cast<double>(rules_.aspect) / kUnitsPerCell;
     const bool holds = obstacle != nullptr && !obstacle->cells.empty() && options_.ground == nullptr;
     const std::optional<HeldFaces> held = holds ? std::optional(HeldFaces{*obstacle}) : std::nullopt;
