@@ -322,7 +322,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     // Decode the kept sand now, because at the undo it would be too late to refuse it.
     const auto stroke = beforeStroke.empty() ? nullptr : read(beforeStroke);
     const auto sand = read(reader.rest());
-    // The statements below throw nothing but std::bad_alloc.
+    // From here on only std::bad_alloc can be thrown.
     surface_->forget();  // before the sand changes, so that nothing of it is kept
     rules_.tuning = head.tuning;
     surface_->changeRules(rules_);

@@ -30,7 +30,7 @@ public:
     /// Continues to step `step`, which must be in the journal on disk and must not be less than the step before.
     void continueTo(std::uint64_t step);
 
-    /// What the replay has computed twice from memory.
+    /// Hashes that the replay has computed twice from memory.
     struct Proven {
         std::uint64_t hash = 0, movement = 0;  // Replica::stateHash(), Replica::movementDigest()
     };

@@ -3,19 +3,17 @@
 
 #include <cstddef>
 
+#include "render_node/gl/vertex_attribute.hpp"
+
 namespace render_node {
 
 SolidMesh::SolidMesh() {
     glBindVertexArray(array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
-    const auto attribute = [](GLuint index, GLint count, std::size_t offset) {
-        glEnableVertexAttribArray(index);
-        glVertexAttribPointer(index, count, GL_FLOAT, GL_FALSE, sizeof(shapes::SolidVertex),
-                              reinterpret_cast<const void*>(offset));
-    };
-    attribute(0, 3, offsetof(shapes::SolidVertex, position));
-    attribute(1, 3, offsetof(shapes::SolidVertex, normal));
-    attribute(2, 2, offsetof(shapes::SolidVertex, along));
+    constexpr auto attribute = describeAttribute<shapes::SolidVertex>;
+    attribute(0, 3, GL_FLOAT, GL_FALSE, offsetof(shapes::SolidVertex, position));
+    attribute(1, 3, GL_FLOAT, GL_FALSE, offsetof(shapes::SolidVertex, normal));
+    attribute(2, 2, GL_FLOAT, GL_FALSE, offsetof(shapes::SolidVertex, along));
 }
 
 void SolidMesh::set(const std::vector<shapes::SolidVertex>& triangles) {

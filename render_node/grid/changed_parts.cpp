@@ -42,7 +42,7 @@ public:
     }
 
 private:
-    // A shift, because this is asked several times for each block, and a division takes ten times as long.
+    // A shift, because this is asked several times for each block, and a division takes much longer.
     [[nodiscard]] int columnOf(int x) const { return (x - area_.x0) >> side_; }
     [[nodiscard]] int rowOf(int y) const { return (y - area_.y0) >> side_; }
 

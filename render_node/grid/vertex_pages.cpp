@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "render_node/gl/vertex_attribute.hpp"
 #include "render_node/grid/free_ranges.hpp"
 
 namespace render_node {
@@ -15,11 +16,7 @@ constexpr std::size_t kMostUnsent = 1 << 13;  // [vertex], so that a new view of
 
 /// Describes the layout of GridVertex in the bound vertex array.
 void describeVertex() {
-    const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
-        glEnableVertexAttribArray(index);
-        glVertexAttribPointer(index, count, type, normalised, sizeof(shapes::GridVertex),
-                              reinterpret_cast<const void*>(offset));
-    };
+    constexpr auto attribute = describeAttribute<shapes::GridVertex>;
     attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(shapes::GridVertex, height));
     attribute(1, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(shapes::GridVertex, column));
     attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(shapes::GridVertex, normalEast));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "render_node/gl/vertex_attribute.hpp"
 #include "render_node/overlay/dot_font.hpp"
 
 namespace render_node {
@@ -11,12 +12,8 @@ namespace render_node {
 FlatPainter::FlatPainter() : program_(shaderSource("flat.vert.glsl"), ShaderSource{}, shaderSource("flat.frag.glsl")) {
     glBindVertexArray(array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
-    glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                          reinterpret_cast<const void*>(offsetof(Vertex, at)));
-    glEnableVertexAttribArray(1);
-    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                          reinterpret_cast<const void*>(offsetof(Vertex, colour)));
+    describeAttribute<Vertex>(0, 2, GL_FLOAT, GL_FALSE, offsetof(Vertex, at));
+    describeAttribute<Vertex>(1, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, colour));
 }
 
 void FlatPainter::addBox(glm::ivec2 topLeft, glm::ivec2 size, glm::vec3 colour) {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include "render_node/gl/vertex_attribute.hpp"
+
 namespace render_node {
 namespace {
 
@@ -52,11 +54,7 @@ void forEachRunOf(const std::vector<TinChunk::Part>& parts, const Wanted& wanted
 }
 
 void describeTinVertex() {
-    const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
-        glEnableVertexAttribArray(index);
-        glVertexAttribPointer(index, count, type, normalised, sizeof(shapes::TinVertex),
-                              reinterpret_cast<const void*>(offset));
-    };
+    constexpr auto attribute = describeAttribute<shapes::TinVertex>;
     attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(shapes::TinVertex, height));
     attribute(1, 2, GL_INT, GL_FALSE, offsetof(shapes::TinVertex, x));
     attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(shapes::TinVertex, normalEast));

@@ -58,7 +58,7 @@ public:
         return secondsSince(began);
     }
     [[nodiscard]] bool wasRefused() const { return refused_; }
-    /// Returns the mean of the steps that have run whole. If there is none, the sweeps of the first one are scaled up.
+    /// Returns the mean of the steps that have run whole. While the first step still runs, scales up its sweeps.
     [[nodiscard]] double secondsOfAStep(std::int32_t sweepsPerStep) const {
         if (whole_ > 0) {
             return static_cast<double>(endedNs_) * 1e-9 / static_cast<double>(whole_);

@@ -48,7 +48,7 @@ struct LargestTools {
 /// Digs as stepCostOf() does, or in a whole TIN, with tools of the scene's kind whose radii double from 4 cells on, and
 /// interpolates between them. Ends at a radius that takes too long, that is half the field, or whose first press does
 /// not fit. Returns nullopt without a tool. Takes about a second, and a large TIN some seconds. Needs memory for a
-/// replica of what is measured.
+/// replica of the part or of the TIN.
 [[nodiscard]] std::optional<LargestTools> largestToolsOf(const Scene& scene);
 
 /// Returns the radius at which a step takes `seconds`, between measured radii with rising times. Both grow as powers

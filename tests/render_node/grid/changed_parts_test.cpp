@@ -28,29 +28,36 @@ std::vector<GridVertices::Overwritten> someIn(int side, int count, std::mt19937&
     return result;
 }
 
-TEST(ChangedParts, AreFewAndDisjointAndHoldAll) {
+/// Calls visit(overwritten, random) for few and many blocks in small and large fields.
+template <class Visit>
+void forEachSample(const Visit& visit) {
     const unsigned seed = test::randomSeed();
     SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     for (const int side : {32, 256, 2048}) {
         for (const int count : {1, 3, 40, 900}) {
-            const std::vector<GridVertices::Overwritten> overwritten = someIn(side, count, random);
-            const std::vector<ChangedPart> parts = render_node::changedParts(overwritten, kReach);
-            ASSERT_GE(parts.size(), 1U);
-            ASSERT_LE(parts.size(), static_cast<std::size_t>(render_node::kMostChangedParts));
-            for (const auto& [cells, before] : overwritten) {
-                const auto holds = [&rect = cells](const ChangedPart& part) {
-                    return part.cells.joinedWith(rect) == part.cells;
-                };
-                ASSERT_EQ(std::count_if(parts.begin(), parts.end(), holds), 1);
-            }
-            for (std::size_t i = 0; i < parts.size(); ++i) {
-                for (std::size_t j = 0; j < i; ++j) {
-                    ASSERT_TRUE(parts[i].cells.clippedTo(parts[j].cells).empty());
-                }
-            }
+            visit(someIn(side, count, random), random);
         }
     }
+}
+
+TEST(ChangedParts, AreFewAndDisjointAndHoldAll) {
+    forEachSample([](const std::vector<GridVertices::Overwritten>& overwritten, std::mt19937&) {
+        const std::vector<ChangedPart> parts = render_node::changedParts(overwritten, kReach);
+        ASSERT_GE(parts.size(), 1U);
+        ASSERT_LE(parts.size(), static_cast<std::size_t>(render_node::kMostChangedParts));
+        for (const auto& [cells, before] : overwritten) {
+            const auto holds = [&rect = cells](const ChangedPart& part) {
+                return part.cells.joinedWith(rect) == part.cells;
+            };
+            ASSERT_EQ(std::count_if(parts.begin(), parts.end(), holds), 1);
+        }
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                ASSERT_TRUE(parts[i].cells.clippedTo(parts[j].cells).empty());
+            }
+        }
+    });
 }
 
 // Two distant places must not become one rectangle, at any distance.
@@ -64,28 +71,22 @@ TEST(ChangedParts, KeepPlacesFarApart) {
 
 // A triangle of a coarse level reaches from a part to cells that belong to another part.
 TEST(ChangedParts, KnowTheHeightsBeforeInTheirReach) {
-    const unsigned seed = test::randomSeed();
-    SCOPED_TRACE(test::again(seed));
-    std::mt19937 random(seed);
-    for (const int side : {32, 256, 2048}) {
-        for (const int count : {1, 3, 40, 900}) {
-            std::vector<GridVertices::Overwritten> overwritten = someIn(side, count, random);
-            for (auto& [cells, before] : overwritten) {
-                const auto low = static_cast<float>(random() % 1000U);
-                before = {low, low + 1};
-            }
-            for (const ChangedPart& part : render_node::changedParts(overwritten, kReach)) {
-                shapes::HeightRange expected{1e9F, -1e9F};
-                for (const auto& [cells, before] : overwritten) {
-                    if (!part.cells.grownBy(kReach).clippedTo(cells).empty()) {
-                        expected = shapes::around(expected, before);
-                    }
-                }
-                ASSERT_EQ(part.before.lowest, expected.lowest);
-                ASSERT_EQ(part.before.highest, expected.highest);
-            }
+    forEachSample([](std::vector<GridVertices::Overwritten> overwritten, std::mt19937& random) {
+        for (auto& [cells, before] : overwritten) {
+            const auto low = static_cast<float>(random() % 1000U);
+            before = {low, low + 1};
         }
-    }
+        for (const ChangedPart& part : render_node::changedParts(overwritten, kReach)) {
+            shapes::HeightRange expected{1e9F, -1e9F};
+            for (const auto& [cells, before] : overwritten) {
+                if (!part.cells.grownBy(kReach).clippedTo(cells).empty()) {
+                    expected = shapes::around(expected, before);
+                }
+            }
+            ASSERT_EQ(part.before.lowest, expected.lowest);
+            ASSERT_EQ(part.before.highest, expected.highest);
+        }
+    });
 }
 
 }  // namespace
