@@ -33,6 +33,7 @@ public:
     [[nodiscard]] HeightRange range() const {
         return {*std::min_element(lowest_.begin(), lowest_.end()), *std::max_element(highest_.begin(), highest_.end())};
     }
+    [[nodiscard]] HeightRange ofLastLane() const { return {lowest_.back(), highest_.back()}; }
 
 private:
     std::array<float, kLanes> lowest_{}, highest_{};
@@ -65,6 +66,7 @@ public:
     }
     [[nodiscard]] bool differs() const { return rows_.first >= 0; }
     [[nodiscard]] HeightRange now() const { return now_.range(); }
+    [[nodiscard]] HeightRange lastColumn() const { return now_.ofLastLane(); }
     /// Returns the cells that differed, in a block whose first column is `column`.
     [[nodiscard]] Overwritten overwritten(int column) const {
         const auto other = [](std::uint32_t lane) { return lane != 0; };
@@ -86,7 +88,8 @@ GridVertices::GridVertices(const sand::HeightField& field, const sand::Ground* g
       cellSize_(static_cast<float>(field.cellSize())),
       blocksAcross_(blocksFor(columns_)),
       heights_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
-      ranges_(static_cast<std::size_t>(blocksAcross_) * static_cast<std::size_t>(blocksFor(rows_))) {
+      ranges_(static_cast<std::size_t>(blocksAcross_) * static_cast<std::size_t>(blocksFor(rows_))),
+      lastColumns_(ranges_.size()) {
     std::vector<Overwritten> all;
     takeOver(field, field.bounds(), all);
     for (int row = 0; row < rows_ && ground != nullptr; ++row) {
@@ -132,6 +135,7 @@ void GridVertices::takeOverBlock(const sand::HeightField& field, int blockX, int
     placesRead_ += std::int64_t{cells.x1 - cells.x0} * (cells.y1 - cells.y0);
     if (walk.differs()) {
         ranges_[blockAt(blockX, blockY)] = walk.now();
+        lastColumns_[blockAt(blockX, blockY)] = walk.lastColumn();
         overwritten.push_back(walk.overwritten(cells.x0));
     }
 }
@@ -155,15 +159,19 @@ HeightRange GridVertices::heights(const sand::CellRect& cells) const {
         sand::CellRect{blocks.x0 * kBlock, blocks.y0 * kBlock, blocks.x1 * kBlock, blocks.y1 * kBlock}.clippedTo(cells);
     add({cells.x0, cells.y0, cells.x1, within.y0}, around);
     add({cells.x0, within.y1, cells.x1, cells.y1}, around);
-    add({cells.x0, within.y0, within.x0, within.y1}, around);
+    const bool oneColumn = within.x0 - cells.x0 == 1;
+    add({cells.x0, within.y0, oneColumn ? cells.x0 : within.x0, within.y1}, around);
     add({within.x1, within.y0, cells.x1, within.y1}, around);
     HeightRange found = around.range();
     for (int y = blocks.y0; y < blocks.y1; ++y) {
+        if (oneColumn) {
+            found = shapes::around(found, lastColumns_[blockAt(blocks.x0 - 1, y)]);
+        }
         for (int x = blocks.x0; x < blocks.x1; ++x) {
             found = shapes::around(found, ranges_[blockAt(x, y)]);
         }
     }
-    placesRead_ += std::int64_t{blocks.x1 - blocks.x0} * (blocks.y1 - blocks.y0);
+    placesRead_ += std::int64_t{blocks.x1 - blocks.x0 + (oneColumn ? 1 : 0)} * (blocks.y1 - blocks.y0);
     return found;
 }
 

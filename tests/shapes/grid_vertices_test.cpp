@@ -165,8 +165,8 @@ TEST(GridVertices, ReadsEachListedCellOnceAndLargePartsByTheirBlocks) {
     EXPECT_EQ(surface.placesRead() - before, 64 * 8);
     before = surface.placesRead();
     (void)surface.heights({39, 79, 105, 89});
-    // 8 blocks, and a ring that is one cell wide around 64 × 8 cells.
-    EXPECT_EQ(surface.placesRead() - before, 8 + 2 * (66 + 8));
+    // 8 blocks, the range of the column to their west, and the rest of a ring that is one cell wide.
+    EXPECT_EQ(surface.placesRead() - before, 8 + 1 + 2 * 66 + 8);
 }
 
 }  // namespace
