@@ -255,7 +255,7 @@ std::vector<shapes::Box> GridMesh::changesSince(std::uint64_t revision, DrawnLev
 
 void GridMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule,
                             std::vector<shapes::Box>& changed) {
-    ++choice_;
+    beginChoice(rule);
     for (const Group& group : groups_) {
         if (levels.empty() || group.revision <= revision) {
             continue;

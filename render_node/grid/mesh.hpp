@@ -97,6 +97,8 @@ private:
         std::uint64_t revision = 0;
     };
     void makeChunks();
+    /// Keeps the levels of the last choice if rule and sand are the same, because a frame asks for them three times.
+    void beginChoice(const LevelRule& rule);
     void makeGroups();
     [[nodiscard]] shapes::HeightRange heightsUnder(const sand::CellRect& vertices) const {
         return surface_.heights(surface_.cellsUnder(vertices));
@@ -147,7 +149,10 @@ private:
     IndexLists lists_;
     std::map<ChunkLevels, Indices> indices_;
     std::uint64_t revision_ = 0;
-    std::uint64_t choice_ = 0;  // number of the current choice of levels; levels are chosen again after it changes
+    // Number of the current choice of levels, and what it was made for. Levels are chosen again after it changes.
+    std::uint64_t choice_ = 0, chosenRevision_ = 0;
+    std::optional<LevelRule> chosenBy_;
+    std::uint64_t draws_ = 0;
     ChangeHistory<ChangedVertices> changes_;
     std::vector<Shown> shown_;  // by the current draw()
     TrianglePace pace_;

@@ -34,6 +34,14 @@ void GridMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visi
     }
 }
 
+void GridMesh::beginChoice(const LevelRule& rule) {
+    if (chosenBy_ != rule || chosenRevision_ != revision_) {
+        ++choice_;
+        chosenBy_ = rule;
+        chosenRevision_ = revision_;
+    }
+}
+
 int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
     Chunk& asked = chunk(x, y);
     if (asked.holes) {
@@ -79,7 +87,7 @@ DrawnLevels GridMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRul
     if (layout_.coarsest == 0) {
         return {};
     }
-    ++choice_;
+    beginChoice(rule);
     DrawnLevels levels(chunks_.size(), -1);
     visitSeen(sceneToClip, true, [&](int x, int y) {
         const sand::CellRect beside =
@@ -101,7 +109,7 @@ ChunkGeometry& GridMesh::geometryOf(Chunk& chunk, const ChunkLevels& levels) {
     }
     work_.vertices +=
         static_cast<std::int64_t>(found->refresh(surface_, levels, chunk.holes ? &*chunk.holes : nullptr, pages_));
-    found->used = choice_;
+    found->used = draws_;
     return *found;
 }
 
@@ -139,7 +147,8 @@ void GridMesh::prepare(const GlProgram& program) const {
 
 GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
                                const ProgramChoice& choose) {
-    ++choice_;
+    beginChoice(rule);
+    ++draws_;
     shown_.clear();
     visitSeen(sceneToClip, culling, [&](int x, int y) {
         const ChunkLevels levels = levelsOf(x, y, rule);
@@ -200,7 +209,7 @@ void GridMesh::dropUnused() {
     }
     for (Chunk& chunk : chunks_) {
         std::erase_if(chunk.geometries,
-                      [this](const ChunkGeometry& geometry) { return geometry.used + kLately < choice_; });
+                      [this](const ChunkGeometry& geometry) { return geometry.used + kLately < draws_; });
     }
 }
 

@@ -30,6 +30,8 @@ public:
     /// at rest.
     LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */,
               double pixelsPerQuad = kPixelsPerQuad);
+    /// Equal rules choose equal levels for equal sand.
+    bool operator==(const LevelRule&) const = default;
     /// Returns whether moving sand has a level of its own.
     [[nodiscard]] bool coarsensMovement() const { return pixelsPerQuad_ > 0 && !needsEveryCell(); }
     /// Returns whether the rule chooses level 0 whatever the errors are.
