@@ -22,6 +22,22 @@ std::unique_ptr<Surface> cloneOf(const Surface& surface) {
     return surface.clone();
 }
 
+/// Returns the cells of the tool's centres in a step: of the points of its path, and of `before` if the tool was in the
+/// sand there.
+CellRect wayOf(const Step& step, const ProbePoint& before, bool wasEngaged) {
+    const auto cellOf = [](const ProbePoint& at) {
+        const int x = at.x >> kProbeBits, y = at.y >> kProbeBits;  // rounded down, also below zero
+        return CellRect{x, y, x + 1, y + 1};
+    };
+    CellRect way = wasEngaged || step.path.empty() ? cellOf(before) : CellRect{};
+    if (step.engaged) {
+        for (const ProbePoint& at : step.path) {
+            way = way.joinedWith(cellOf(at));
+        }
+    }
+    return way;
+}
+
 /// All that the state hash covers.
 struct Hashed {
     StateHead head;
@@ -117,15 +133,25 @@ bool Replica::movesTool(const Step& step) const {
     return step.engaged != engaged_ || (engaged_ && (turns || !step.path.empty()));
 }
 
+bool Replica::displacesSand(const Step& step) const {
+    const bool otherTool = step.edit.kind == Edit::tune && step.edit.tuning.tool != rules_.tuning.tool;
+    return movesTool(step) || (step.engaged && otherTool);
+}
+
 Owed Replica::owedBy(const Step& step) const {
     if (step.edit.kind == Edit::tune) {
-        return {step.edit.tuning.sweepsPerStep, 0};
+        const SweepPlan plan = rules_.sweepPlan(step.edit.tuning);
+        return {displacesSand(step) ? plan.moved : plan.still, 0};
     }
     if (settlesBySweeps(step)) {
         return {Owed::kUntilRest, 0};
     }
     const bool endsSettle = step.edit.kind == Edit::settle || (owed_.untilRest() && movesTool(step));
-    return owed_.any() && !endsSettle ? owed_ : Owed{rules_.tuning.sweepsPerStep, 0};
+    if (owed_.any() && !endsSettle) {
+        return owed_;
+    }
+    const SweepPlan plan = rules_.sweepPlan();
+    return {displacesSand(step) ? plan.moved : plan.still, 0};
 }
 
 std::int32_t Replica::mostSweeps(const Step& step) const {
@@ -147,8 +173,7 @@ std::int32_t Replica::wholeSweeps(const Step& step) const {
 }
 
 std::int32_t Replica::wholeOf(const Owed& owed) const {
-    return owed.untilRest() ? std::min(std::max(settlingSweeps(), rules_.tuning.sweepsPerStep), owed.left())
-                            : owed.left();
+    return owed.untilRest() ? std::min(std::max(settlingSweeps(), rules_.sweepPlan().still), owed.left()) : owed.left();
 }
 
 bool Replica::restoreKept() {
@@ -166,8 +191,9 @@ bool Replica::restoreKept() {
 }
 
 void Replica::applyToSand(const Step& step, const std::function<void()>& moved) {
-    lastWork_ = {0, substepsOf(step, probe_, engaged_)};
+    lastWork_ = {0, substepsOf(step, probe_, engaged_, rules_.substepLength())};
     const Owed owed = owedBy(step);
+    const bool displaces = displacesSand(step);
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
     const Tool toolBefore = tool();
@@ -221,7 +247,11 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
     }
     const std::int32_t sweeps = step.sweeps != 0 ? step.sweeps : wholeOf(owed_);
     moved();
-    const Swept swept = surface_->sweep({sweeps, owed_.done, owed_.whole}, engaged_ ? &here : nullptr, probe_);
+    const Tool* const obstacle = engaged_ ? &here : nullptr;
+    if (displaces && rules_.sweepPlan().hasCoarsePhase()) {
+        surface_->slideCoarsely(wayOf(step, before, wasEngaged), obstacle, probe_);
+    }
+    const Swept swept = surface_->sweep({sweeps, owed_.done, owed_.whole}, obstacle, probe_);
     lastWork_.sweeps = swept.sweeps;
     settleCameToRest_ = swept.still && settling();
     owed_ = swept.still ? Owed{} : owed_.after(sweeps);

@@ -201,6 +201,8 @@ private:
     [[nodiscard]] StateHead head() const;
     /// Returns whether `step` moves a tool that is in the sand before the step or after it.
     [[nodiscard]] bool movesTool(const Step& step) const;
+    /// Returns whether `step` moves a tool that is in the sand, or gives it another shape.
+    [[nodiscard]] bool displacesSand(const Step& step) const;
     /// Returns the sweeps that are owed when `step` has begun, before it runs any. Assumes that an undo, reset or load
     /// has no effect.
     [[nodiscard]] Owed owedBy(const Step& step) const;

@@ -68,10 +68,10 @@ bool PathBuilder::moves() const {
     });
 }
 
-sand::ProbePoint PathBuilder::approach(const sand::ProbePoint& goal, std::int64_t substeps) {
-    const std::int64_t all = sand::substepsBetween(last_, goal);
+sand::ProbePoint PathBuilder::approach(const sand::ProbePoint& goal, const SubstepLimit& limit) {
+    const std::int64_t all = sand::substepsBetween(last_, goal, limit.length);
     const auto part = [&](std::int32_t from, std::int32_t to) {
-        return static_cast<std::int32_t>(from + (std::int64_t{to} - from) * substeps / all);
+        return static_cast<std::int32_t>(from + (std::int64_t{to} - from) * limit.most / all);
     };
     last_ = {part(last_.x, goal.x), part(last_.y, goal.y), part(last_.z, goal.z)};
     return last_;
@@ -93,9 +93,9 @@ std::int64_t PathBuilder::take(sand::Step& step, const SubstepLimit& limit) {
     while (!waiting_.empty() && waiting_.front().engaged == engaged_ && waiting_.front().readNs < until) {
         const HandSample sample = waiting_.front();
         if (engaged_ && sample.probe != last_) {
-            substeps += changed && path.empty() ? 1 : sand::substepsBetween(last_, sample.probe);
+            substeps += changed && path.empty() ? 1 : sand::substepsBetween(last_, sample.probe, limit.length);
             if (path.empty() && substeps > limit.most) {
-                path.push_back(approach(sample.probe, limit.most));  // the sample waits for the next step
+                path.push_back(approach(sample.probe, limit));  // the sample waits for the next step
                 break;
             }
             if (!path.empty() && substeps > std::min(limit.wanted, limit.most)) {

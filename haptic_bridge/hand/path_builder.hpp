@@ -22,8 +22,9 @@ struct HandSample {
 /// Most sub-steps of an engaged tool in the path of a step.
 struct SubstepLimit {
     static constexpr std::int64_t kNone = INT64_MAX;
-    std::int64_t wanted = kNone;  // a path that ends at its first point may have more
-    std::int64_t most = kNone;    // the way to the first point is divided if it has more
+    std::int64_t wanted = kNone;                // a path that ends at its first point may have more
+    std::int64_t most = kNone;                  // the way to the first point is divided if it has more
+    std::int32_t length = sand::kProbePerCell;  // Rules::substepLength() [probe unit]
 };
 
 /// Gathers hand samples and cuts them into the paths of steps. Not thread-safe.
@@ -74,7 +75,7 @@ private:
     [[nodiscard]] std::int64_t waitingNs() const { return waiting_.back().readNs - waiting_.front().readNs; }
     void letGoIfFarAhead();
     /// Brings the tool nearer to `goal` by at most `substeps` sub-steps. Returns the point that it reaches.
-    sand::ProbePoint approach(const sand::ProbePoint& goal, std::int64_t substeps);
+    sand::ProbePoint approach(const sand::ProbePoint& goal, const SubstepLimit& limit);
 
     std::int64_t mostNs_;  // [ns] of hand movement that a step may hold
     std::deque<HandSample> waiting_;

@@ -64,7 +64,8 @@ std::int32_t SweepBudget::sweepsOf(const sand::Step& step, const sand::Replica& 
     double sweeps = static_cast<double>(std::min<std::int64_t>(part_, most));
     if (sweepNs_ > 0) {
         const double budget = static_cast<double>(budgetNs());
-        const std::int64_t substeps = sand::substepsOf(step, replica.probe(), replica.engaged());
+        const std::int64_t substeps =
+            sand::substepsOf(step, replica.probe(), replica.engaged(), replica.rules().substepLength());
         const double others = static_cast<double>(hashNs_) + substepNs_ * static_cast<double>(substeps);
         // A drag or a hash that takes the whole budget still leaves a quarter of it for sweeps, or they would stop.
         sweeps = std::min(sweeps, sweepsIn(std::max(budget - others, budget / 4), substeps, replica.tool()));
@@ -82,7 +83,7 @@ double SweepBudget::sweepsIn(double ns, std::int64_t substeps, const sand::Tool&
 }
 
 SubstepLimit SweepBudget::substeps(const sand::Replica& replica) const {
-    SubstepLimit limit{.most = replica.rules().mostSubsteps()};
+    SubstepLimit limit{.most = replica.rules().mostSubsteps(), .length = replica.rules().substepLength()};
     if (pace_ == Pace::realtime && substepNs_ > 0) {
         const double fit = static_cast<double>(budgetNs()) / substepNs_;
         limit.wanted = static_cast<std::int64_t>(std::clamp(fit, 1.0, static_cast<double>(limit.most)));

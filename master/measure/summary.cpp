@@ -98,9 +98,10 @@ RefusedPressPart refusedPressOf(const sand::Replica& replica) {
 }
 
 std::string describe(const RefusedPressPart& press) {
-    std::string text =
-        fmt::format("the cells around the {} of radius {:.4g} cannot hold its sand, so the tool passes through it",
-                    press.shape, press.radius);
+    // A TIN knows no largest radius.
+    std::string text = fmt::format("the cells around the {} of radius {:.4g} cannot hold its sand, so the tool {}",
+                                   press.shape, press.radius,
+                                   press.largest ? "digs less deep than the hand" : "passes through it");
     if (press.largest) {
         text += *press.largest > 0 ? fmt::format("; the largest {} that fits there has a radius of {:.4g}", press.shape,
                                                  *press.largest)

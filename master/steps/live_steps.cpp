@@ -20,9 +20,10 @@ namespace {
 /// Adds up the work of the next steps of a replica.
 class FrameWork {
 public:
-    explicit FrameWork(const sand::Replica& replica) : probe_(replica.probe()), engaged_(replica.engaged()) {}
+    explicit FrameWork(const sand::Replica& replica)
+        : probe_(replica.probe()), engaged_(replica.engaged()), length_(replica.rules().substepLength()) {}
     void add(const sand::Step& step) {
-        all_ += {step.sweeps, sand::substepsOf(step, probe_, engaged_)};
+        all_ += {step.sweeps, sand::substepsOf(step, probe_, engaged_, length_)};
         probe_ = step.path.empty() ? probe_ : step.path.back();
         engaged_ = step.engaged;
     }
@@ -32,6 +33,7 @@ private:
     sand::StepWork all_;
     sand::ProbePoint probe_;
     bool engaged_;
+    std::int32_t length_;  // of a sub-step [probe unit]
 };
 
 constexpr const char* kOtherSand = "the hand felt other sand than the wall has shown";

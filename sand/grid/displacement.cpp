@@ -157,7 +157,7 @@ Cut Displacement::findCut(const HeightField& field, const Ground* ground, ProbeP
     Cut cut;
     cut.cells = cells(field, probe);
     const auto across = static_cast<std::size_t>(std::max(cut.cells.x1 - cut.cells.x0, 0));
-    const auto above = path_ != base::CodePath::baseline ? v3::sandAbove : baseline::sandAbove;
+    const auto above = path_ != base::CodePath::baseline ? sand::v3::sandAbove : sand::baseline::sandAbove;
     std::vector<std::int32_t>& lowest = cut.lowest;
     lowest.resize(across);  // room for one row more than the tool cuts
     for (int y = cut.cells.y0; y < cut.cells.y1; ++y) {
@@ -263,14 +263,25 @@ std::int32_t Displacement::largestRadius(const HeightField& field, Rim rim, cons
     return fits * kProbePerCell;
 }
 
+Displacement::Work Displacement::pressAbove(HeightField& field, Rim rim, const Ground* ground, Press at) const {
+    std::int32_t& z = at.probe.z;
+    std::int32_t refused = z, fits = kMaxHeight / kUnitsPerProbe + tool_.radius + 1;  // above all sand it takes nothing
+    while (fits - refused > 1) {
+        z = refused + (fits - refused) / 2;
+        (press(field, nullptr, rim, ground, at).refused > 0 ? refused : fits) = z;
+    }
+    z = fits;
+    return press(field, &field, rim, ground, at);
+}
+
 Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to,
                                       bool measures) const {
     const std::int64_t dx = std::int64_t{to.x} - from.x;
     const std::int64_t dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
     const std::int64_t longest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
-    const std::int64_t steps = substepsBetween(from, to);
-    Work all{.cells = {field.columns(), field.rows(), 0, 0}};
+    const std::int64_t steps = substepsBetween(from, to, substepOnGrid(tool_));
+    Work all;
     for (std::int64_t i = 1; i <= steps; ++i) {
         const ProbePoint probe{static_cast<std::int32_t>(from.x + dx * i / steps),
                                static_cast<std::int32_t>(from.y + dy * i / steps),
@@ -282,15 +293,13 @@ Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground*
         const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
         const Press at{probe, {dx / scale, dy / scale}};
         const Work one = press(field, &field, rim, ground, at);
-        if (measures && one.refused > 0 && !all.largest) {
-            all.largest = largestRadius(field, rim, ground, at);  // refused sand has not moved
+        all.add(one);
+        if (one.refused > 0) {
+            if (measures && !all.largest) {
+                all.largest = largestRadius(field, rim, ground, at);  // refused sand has not moved
+            }
+            all.add(pressAbove(field, rim, ground, at));
         }
-        all.refused += one.refused;
-        if (!one.cells.empty()) {
-            all.cells = {std::min(all.cells.x0, one.cells.x0), std::min(all.cells.y0, one.cells.y0),
-                         std::max(all.cells.x1, one.cells.x1), std::max(all.cells.y1, one.cells.y1)};
-        }
-        all.outflow += one.outflow;
     }
     return all;
 }

@@ -53,19 +53,26 @@ class Displacement {
 public:
     /// The results are the same with every `path`.
     explicit Displacement(const Tool& tool, base::CodePath path = base::fastestCodePath())
-        : tool_(tool), shape_(tool, path), path_(path) {}
+        : tool_(tool), shape_(tool, TurnedShape::SphereRing::wide, path), path_(path) {}
 
     /// Effect of one drag on the sand.
     struct Work {
         CellRect cells{};                                    // cells that may have changed
         std::int64_t outflow = 0;                            // volume pushed over an open rim [unit · cell]
-        std::int64_t refused = 0;                            // presses with sand that stayed where it was
+        std::int64_t refused = 0;                            // presses whose sand did not fit
         std::optional<std::int32_t> largest = std::nullopt;  // RefusedPress::largest of the first of them
+
+        void add(const Work& other) {
+            cells = cells.joinedWith(other.cells);
+            outflow += other.outflow;
+            refused += other.refused;
+        }
     };
 
-    /// Moves the tool from `from` to `to` in sub-steps of at most one cell, and displaces the sand. Sand that no cell
-    /// can take stays where it is. `ground` may be null; its rock and walls do not move. Sand stays on its side of
-    /// walls, and of rock that is higher than the sand that the tool takes. If `measures`, returns Work::largest.
+    /// Moves the tool from `from` to `to` in sub-steps of substepOnGrid(), and displaces the sand. If no cell can take
+    /// the sand of a press, the tool digs less deep there. `ground` may be null; its rock and walls do not move. Sand
+    /// stays on its side of walls, and of rock that is higher than the sand that the tool takes. If `measures`, returns
+    /// Work::largest.
     Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to,
               bool measures = false) const;
 
@@ -74,6 +81,9 @@ public:
         const auto around = [this](const ProbePoint& at) { return shape_.cellsChanged(at.x, at.y); };
         return around(from).joinedWith(around(to)).clippedTo(field.bounds());
     }
+    /// Returns the distance from the tool's centre up to which a coarse phase slides sand [cell]. With half a radius
+    /// less, 12 % of the sand of a stroke of 61 cells is in another place than with all sweeps, and not 2.6 %.
+    [[nodiscard]] int reachOfCoarsePhase() const { return tool_.radius / kProbePerCell * 7 / 4 + shape_.ringCells(); }
     /// Returns the obstacle of a tool whose centre is at `probe`.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint probe) const;
     /// Returns the cells of the field that may be below the tool while its centre is at `probe`.
@@ -87,6 +97,8 @@ private:
     };
     /// Presses the sand of `field`. Changes `into`, which is `field`, or null to find out what would be refused.
     Work press(const HeightField& field, HeightField* into, Rim rim, const Ground* ground, const Press& at) const;
+    /// Presses with the tool at the lowest height above `at`, in whole probe units, at which its sand fits.
+    Work pressAbove(HeightField& field, Rim rim, const Ground* ground, Press at) const;
     /// Does the work of press() part by part of the surroundings, which must be barred.
     Work pressInParts(const HeightField& field, HeightField* into, Rim rim, const Ground& ground, const Press& at,
                       const Cut& cut, const Surroundings& surroundings) const;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 
+#include "sand/grid/coarse_level.hpp"
 #include "sand/grid/settle.hpp"
 #include "sand/model/grid_codec.hpp"
 
@@ -28,6 +29,7 @@ GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shar
     : rules_(rules),
       ground_(std::move(ground)),
       field_(field),
+      how_(options),
       erosion_(field_, rules_, withGround(options, ground_.get())),
       hash_(field_) {
     base::ByteWriter writer;
@@ -69,8 +71,9 @@ SurfaceChange GridSurface::takeChange() {
     return {.whole = false, .parts = std::move(change)};
 }
 
-void GridSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
+void GridSurface::drag(const Tool& tool, std::span<const ProbePoint> whole) {
     const Displacement displacement(tool);
+    const std::vector<ProbePoint> path = pathInSubsteps({whole.begin(), whole.end()}, substepOnGrid(tool));
     for (std::size_t i = 1; i < path.size(); ++i) {
         beforeStroke_.willChange(field_, displacement.cellsChanged(field_, path[i - 1], path[i]));
         const Displacement::Work done =
@@ -91,6 +94,26 @@ void GridSurface::release(const Tool& tool, const ProbePoint& probe) {
 
 void GridSurface::arrive(const Tool& tool, const ProbePoint& probe) {
     erosion_.wake(Displacement(tool).cells(field_, probe));
+}
+
+void GridSurface::slideCoarsely(const CellRect& way, const Tool* tool, const ProbePoint& probe) {
+    const SweepPlan plan = rules_.sweepPlan();
+    const Displacement displacement(tool == nullptr ? rules_.tuning.tool : *tool);
+    const CellRect patch = way.grownBy(displacement.reachOfCoarsePhase()).clippedTo(field_.bounds());
+    if (patch.empty()) {
+        return;
+    }
+    beforeStroke_.willChange(field_, patch.grownBy(plan.coarsest).clippedTo(field_.bounds()));
+    const Obstacle here = tool == nullptr ? Obstacle{} : displacement.obstacle(field_, probe);
+    const CoarseLevel::Site site{field_, rules_, ground_.get(), here.cells.empty() ? nullptr : &here, how_};
+    for (int side = plan.coarsest; side >= SweepPlan::kFinestSide; side /= 2) {
+        const CoarseLevel::Result slid = CoarseLevel(site, patch, side).sweep(plan.sweepsOf(side));
+        outflow_ += slid.outflow;
+        if (!slid.changed.empty()) {
+            erosion_.touch(slid.changed);
+            touch(slid.changed);
+        }
+    }
 }
 
 Swept GridSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {

@@ -29,6 +29,7 @@ public:
     [[nodiscard]] const RefusedPresses& refusedPresses() const override { return refused_; }
     void release(const Tool& tool, const ProbePoint& probe) override;
     void arrive(const Tool& tool, const ProbePoint& probe) override;
+    void slideCoarsely(const CellRect& way, const Tool* tool, const ProbePoint& probe) override;
     Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
     [[nodiscard]] bool settle() override;
@@ -78,6 +79,7 @@ private:
     Rules rules_;
     std::shared_ptr<const Ground> ground_;
     HeightField field_;
+    Erosion::Options how_;
     Erosion erosion_;
     TileHash hash_;
     Movement movement_;

@@ -27,12 +27,17 @@ inline constexpr std::int32_t kMaxProbe = 1 << 24;
     return static_cast<std::int32_t>(std::floor(std::clamp(cells * kProbePerCell, -kFarthest, kFarthest - 1) + 0.5));
 }
 
-/// Returns the number of sub-steps in which a tool moves from one probe point to another: at most a cell each, and at
-/// least one.
-[[nodiscard]] inline std::int64_t substepsBetween(const ProbePoint& from, const ProbePoint& to) {
+/// Returns the distance between two probe points along the axis along which they are farthest apart [probe unit].
+[[nodiscard]] inline std::int64_t distanceAlongAxis(const ProbePoint& from, const ProbePoint& to) {
     const auto distance = [](std::int64_t a, std::int64_t b) { return a < b ? b - a : a - b; };
-    const std::int64_t longest = std::max({distance(from.x, to.x), distance(from.y, to.y), distance(from.z, to.z)});
-    return std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
+    return std::max({distance(from.x, to.x), distance(from.y, to.y), distance(from.z, to.z)});
+}
+
+/// Returns the number of sub-steps in which a tool moves from one probe point to another: at most `length` each along
+/// every axis, and at least one.
+[[nodiscard]] inline std::int64_t substepsBetween(const ProbePoint& from, const ProbePoint& to,
+                                                  std::int32_t length = kProbePerCell /* [probe unit] */) {
+    return std::max<std::int64_t>((distanceAlongAxis(from, to) + length - 1) / length, 1);
 }
 
 /// Returns the probe point of a place [cell]. All code that quantises a place uses it.

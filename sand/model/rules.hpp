@@ -7,6 +7,7 @@
 
 #include "base/field_forms.hpp"
 #include "base/names.hpp"
+#include "sand/model/sweep_plan.hpp"
 #include "sand/model/tuning.hpp"
 #include "sand/model/units.hpp"
 
@@ -14,7 +15,7 @@ namespace sand {
 
 /// Version of the algorithm. It increases with every change to what a step does to the sand. Programs of different
 /// versions refuse to run together.
-inline constexpr std::uint32_t kAlgorithmVersion = 14;
+inline constexpr std::uint32_t kAlgorithmVersion = 15;
 
 /// Law by which sand slides on a height field. The documents call `isotropic` G and `plainIsotropic` plain G;
 /// docs/sand.md states both laws.
@@ -76,9 +77,16 @@ struct Rules {
     /// Returns a digest of what heights belong to, beside the size: rock and walls of a height field, or the start of a
     /// TIN.
     [[nodiscard]] std::uint64_t siteDigest() const { return ground ^ tin; }
+    [[nodiscard]] SweepPlan sweepPlan() const { return sweepPlan(tuning); }
+    /// Returns the plan after an operator's tuning.
+    [[nodiscard]] SweepPlan sweepPlan(const Tuning& tuned) const {
+        return tin == 0 ? gridSweepPlan(tuned) : tinSweepPlan(tuned);
+    }
     /// Returns what a step of this sand may state. Steps of a TIN state no sweeps, because all of its sweeps run in one
     /// step: the fluxes between two of them are no state.
     [[nodiscard]] StepLimits stepLimits() const;
+    /// Returns the length of a sub-step of the tool along every axis [probe unit].
+    [[nodiscard]] std::int32_t substepLength() const { return tin == 0 ? substepOnGrid(tuning.tool) : kProbePerCell; }
     /// Returns how many sub-steps the path of a step may have with the tool of these rules, at least 1. A replica
     /// leaves out a longer path, and a program that numbers steps divides it.
     [[nodiscard]] std::int64_t mostSubsteps() const;

@@ -128,15 +128,34 @@ void Step::get(base::ByteReader& reader) {
     edit = decodeDetails(static_cast<Edit::Kind>(kind), reader);
 }
 
-std::int64_t substepsOf(const Step& step, const ProbePoint& probe, bool engaged) {
+std::vector<ProbePoint> pathInSubsteps(std::vector<ProbePoint> path, std::int32_t length) {
+    if (length <= kProbePerCell) {
+        return path;
+    }
+    std::int64_t since = 0;  // length of the path since the last point that stays
+    std::size_t kept = 1;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        since += distanceAlongAxis(path[i - 1], path[i]);
+        const bool pressesInPlace = i == 1 && since == 0;
+        if (i + 1 == path.size() || pressesInPlace || since + distanceAlongAxis(path[i], path[i + 1]) > length) {
+            path[kept++] = path[i];
+            since = 0;
+        }
+    }
+    path.resize(std::min(kept, path.size()));
+    return path;
+}
+
+std::int64_t substepsOf(const Step& step, const ProbePoint& probe, bool engaged, std::int32_t length) {
     if (!step.engaged || step.path.empty()) {
         return 0;
     }
+    std::vector<ProbePoint> path{engaged ? probe : step.path.front()};
+    path.insert(path.end(), step.path.begin(), step.path.end());
+    path = pathInSubsteps(std::move(path), length);
     std::int64_t substeps = 0;
-    ProbePoint from = engaged ? probe : step.path.front();
-    for (const ProbePoint& to : step.path) {
-        substeps += substepsBetween(from, to);
-        from = to;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        substeps += substepsBetween(path[i - 1], path[i], length);
     }
     return substeps;
 }
@@ -150,7 +169,7 @@ std::string Step::refusal(const StepLimits& limits) const {
                     : std::to_string(limits.leastSweeps) + " to " + std::to_string(limits.mostSweeps));
     }
     // The way to the first point is not among them, because only a replica knows where the tool is.
-    if (const std::int64_t substeps = substepsOf(*this, {}, false) - 1; substeps > limits.mostSubsteps) {
+    if (const std::int64_t substeps = substepsOf(*this, {}, false, kProbePerCell) - 1; substeps > limits.mostSubsteps) {
         return step + " has a path of " + std::to_string(substeps) + " sub-steps; a step of this sand has at most " +
                std::to_string(limits.mostSubsteps);
     }

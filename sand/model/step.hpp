@@ -106,7 +106,13 @@ struct StepWork {
     friend bool operator==(const StepWork&, const StepWork&) = default;
 };
 
-/// Returns the sub-steps of `step`, before which the tool is at `probe` and `engaged` or not.
-[[nodiscard]] std::int64_t substepsOf(const Step& step, const ProbePoint& probe, bool engaged);
+/// Returns the path that a tool takes in sub-steps of `length` [probe unit]. Leaves out points of `path` that are less
+/// than a sub-step apart along it. The first and the last point stay, and so does a press in place at the beginning.
+/// With sub-steps of a cell it keeps all points.
+[[nodiscard]] std::vector<ProbePoint> pathInSubsteps(std::vector<ProbePoint> path, std::int32_t length);
+
+/// Returns the sub-steps of `step`, before which the tool is at `probe` and `engaged` or not. `length` is
+/// Rules::substepLength().
+[[nodiscard]] std::int64_t substepsOf(const Step& step, const ProbePoint& probe, bool engaged, std::int32_t length);
 
 }  // namespace sand

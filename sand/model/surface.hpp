@@ -93,6 +93,9 @@ public:
     /// Called after the tool has left the sand. A TIN then keeps the tool's outline in its mesh, or removes it,
     /// as tin::Settings::keepConstraints says.
     virtual void leave(const Tool&) {}
+    /// Called before the sweeps of a step that has moved the tool, if the rules give it a coarse phase. `way` contains
+    /// the cells of the tool's centres, before the step and in it. `tool` and `probe` are as for sweep().
+    virtual void slideCoarsely(const CellRect& /* way */, const Tool* /* tool */, const ProbePoint& /* probe */) {}
     /// Lets the sand slide for the sweeps of `part`, or until a sweep moves no sand. `tool` is an obstacle with its
     /// centre at `probe`; null without one. A TIN takes each call for a whole step.
     virtual Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -8,10 +9,14 @@
 #include "base/field_forms.hpp"
 #include "base/names.hpp"
 #include "sand/model/heading.hpp"
+#include "sand/model/units.hpp"
 
 namespace sand {
 
 inline constexpr std::int32_t kLargestToolRadius = 2048 << 8;  // [probe unit]; 2048 cells
+/// Largest tool of a height field without the changes for large tools: wider ring, longer sub-steps, coarse phase
+/// [probe unit].
+inline constexpr std::int32_t kLargestPlainTool = 16 * kProbePerCell;
 
 /// Kind of a tool. The underside of a flat tool is level.
 enum class ToolKind : std::uint8_t {
@@ -62,6 +67,12 @@ struct Tool {
     }
     friend bool operator==(const Tool&, const Tool&) = default;
 };
+
+/// Returns the length of a sub-step of a tool of a height field along every axis [probe unit]. A large tool covers all
+/// sand between its places if it moves by less than its width.
+[[nodiscard]] constexpr std::int32_t substepOnGrid(const Tool& tool) {
+    return std::max(tool.radius / 16, kProbePerCell);
+}
 
 /// Returns the heading of the tool in the hand, until now `held`, after an operator has replaced the tool of the rules.
 /// A tool that a hand has turned keeps its heading, unless the operator turns the tool.

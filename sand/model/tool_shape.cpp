@@ -24,18 +24,28 @@ constexpr std::array<SolePiece, 9> kSole{{{-0.69, 0.05, 0.31, 0.62, 0, 0.07},
                                           {0.675, -0.48, 0.088, 0.14, 0.03, 0.06},
                                           {0.575, -0.75, 0.08, 0.13, 0.03, 0.06}}};
 
+/// Returns by how much the ring of places that take sand is wider than that of a small sphere [probe unit].
+std::int64_t widerRing(const Tool& tool, TurnedShape::SphereRing ring) {
+    if (tool.kind != ToolKind::sphere) {
+        return (isRound(tool.kind) ? tool.radius : tool.halfWidth) / 4;
+    }
+    return ring == TurnedShape::SphereRing::narrow
+               ? 0
+               : std::min(tool.radius / 4, std::max(0, tool.radius - kLargestPlainTool));
+}
+
 }  // namespace
 
 std::span<const SolePiece> solePieces(ToolKind kind) {
     return kind == ToolKind::footprint ? std::span<const SolePiece>(kSole) : std::span<const SolePiece>();
 }
 
-TurnedShape::TurnedShape(const Tool& tool, base::CodePath path)
+TurnedShape::TurnedShape(const Tool& tool, SphereRing ring, base::CodePath path)
     : tool_(tool),
       path_(path),
       length_(tool.radius),
       width_(tool.halfWidth),
-      ring_(kRing + (tool.kind == ToolKind::sphere ? 0 : (isRound(tool.kind) ? tool.radius : tool.halfWidth) / 4)),
+      ring_(kRing + widerRing(tool, ring)),
       scale_(1 / std::sqrt(static_cast<double>(std::int64_t{tool.heading.x} * tool.heading.x +
                                                std::int64_t{tool.heading.y} * tool.heading.y))),
       east_(tool.radius),

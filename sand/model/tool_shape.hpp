@@ -41,8 +41,13 @@ public:
     /// Underside of a place that is not below the tool.
     static constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
 
+    /// Width of the ring around a sphere. A wide ring grows with the sphere from 16 cells on: without it, the first
+    /// press of a large sphere would make a wall.
+    enum class SphereRing { narrow, wide };
+
     /// The results are the same with every `path`.
-    explicit TurnedShape(const Tool& tool, base::CodePath path = base::fastestCodePath());
+    explicit TurnedShape(const Tool& tool, SphereRing ring = SphereRing::narrow,
+                         base::CodePath path = base::fastestCodePath());
 
     /// Returns the height of the underside over a place [unit] while the tool's centre is at height `z` [probe unit].
     /// Returns kFree if the place is not below the tool.
@@ -68,8 +73,9 @@ public:
                                    : longUnderside(0, offset) != kFree;
     }
     /// Returns whether a place beside the tool takes sand, given that covers() is false there. A place takes sand
-    /// within two cells of a sphere's outline. Around other tools the distance is larger by an eighth of the tool's
-    /// width, because large stamps would otherwise pile up a wall around them. A place between two toes takes no sand.
+    /// within two cells of a sphere's outline, and farther out with a wide ring. Around other tools the distance is
+    /// larger by an eighth of the tool's width, because large stamps would otherwise pile up a wall around them. A
+    /// place between two toes takes no sand.
     [[nodiscard]] bool takes(const Offset& offset) const {
         const std::int64_t outer = tool_.radius + ring_;
         return isRound(tool_.kind) ? offset.squared() <= outer * outer : longTakes(offset);
@@ -85,6 +91,8 @@ public:
     /// front along the heading, then from right to left. A mirrored tool reverses right and left. Call it only if
     /// hasHeading(); places around a round tool are ordered by rows instead.
     [[nodiscard]] bool before(const Offset& a, const Offset& b) const;
+    /// Returns the distance from the outline within which places take sand, rounded up [cell].
+    [[nodiscard]] int ringCells() const { return static_cast<int>((ring_ + kProbePerCell - 1) / kProbePerCell); }
     [[nodiscard]] bool hasHeading() const { return !isRound(tool_.kind); }
 
     /// Returns a rectangle that contains all cells within `margin` of a tool whose centre is at (x, y) [probe unit]. It

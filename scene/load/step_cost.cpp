@@ -59,12 +59,12 @@ public:
     }
     [[nodiscard]] bool wasRefused() const { return refused_; }
     /// Returns the mean of the steps that have run whole. While the first step still runs, scales up its sweeps.
-    [[nodiscard]] double secondsOfAStep(std::int32_t sweepsPerStep) const {
+    [[nodiscard]] double secondsOfAStep(std::int32_t sweeps) const {
         if (whole_ > 0) {
             return static_cast<double>(endedNs_) * 1e-9 / static_cast<double>(whole_);
         }
         const double perSweep = static_cast<double>(sweepNs_) / static_cast<double>(std::max<std::int64_t>(sweeps_, 1));
-        return (static_cast<double>(dragNs_) + perSweep * sweepsPerStep) * 1e-9;
+        return (static_cast<double>(dragNs_) + perSweep * sweeps) * 1e-9;
     }
 
 private:
@@ -116,7 +116,7 @@ std::optional<StepCost> stepCostOf(const Scene& scene) {
     Digger digger(*part);
     StepCost cost{.columns = part->rules.columns, .rows = part->rules.rows};
     cost.measured = digger.digFor(kSeconds);
-    cost.seconds = digger.secondsOfAStep(scene.rules.tuning.sweepsPerStep) * moreOnTheField(scene, *part);
+    cost.seconds = digger.secondsOfAStep(scene.rules.sweepPlan().moved) * moreOnTheField(scene, *part);
     return cost;
 }
 
@@ -124,7 +124,7 @@ std::string StepCost::text(const Scene& scene) const {
     return fmt::format(
         "a step in which the tool digs takes ≈ {} ms of one core for {} sweeps at most; it was measured for {:.1f} s "
         "on {} x {} cells",
-        shortText(seconds * 1e3), scene.rules.tuning.sweepsPerStep, measured, columns, rows);
+        shortText(seconds * 1e3), scene.rules.sweepPlan().moved, measured, columns, rows);
 }
 
 std::optional<LargestTools> largestToolsOf(const Scene& scene) {
@@ -148,7 +148,7 @@ std::optional<LargestTools> largestToolsOf(const Scene& scene) {
         if (digger.wasRefused()) {
             break;
         }
-        const double seconds = digger.secondsOfAStep(part.rules.tuning.sweepsPerStep) * moreOnTheField(scene, part);
+        const double seconds = digger.secondsOfAStep(part.rules.sweepPlan().moved) * moreOnTheField(scene, part);
         // Noise must not make a larger tool faster.
         measured.emplace_back(cells, std::max(seconds, measured.empty() ? 0 : measured.back().second));
         if (seconds > LargestTools::kLongFrame || secondsSince(began) > kSecondsInAll) {

@@ -46,7 +46,7 @@ double thresholdOf(const Material& material) {
 std::int32_t sweepsFor(sand::Scheme scheme, double radius /* [cell] */, double settlingSeconds, int stepsPerSecond) {
     const double perSquare = scheme == sand::Scheme::isotropic ? 1.0 : 2.4;
     const double sweeps = perSquare * radius * radius / (settlingSeconds * stepsPerSecond);
-    return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 4.0, double{sand::kMostSweeps}));
+    return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 4.0, double{sand::kMostSweepsToRest}));
 }
 
 /// Returns why the tool's shape is invalid, or nullopt if it is valid.

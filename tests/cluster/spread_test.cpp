@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of a large tool that are spread over frames: processes that are killed meanwhile, and walls that are slow.
+// Steps of many sweeps that are spread over frames: processes that are killed meanwhile, and walls that are slow.
 #include <csignal>
 #include <string>
 #include <vector>
@@ -10,16 +10,17 @@
 
 namespace {
 
-/// The tool has a radius of 48 cells, so that a step takes many frames.
+/// The tool has a radius of 16 cells and a short settling time. A step has 2134 sweeps, and so takes many frames. A
+/// larger tool would have a coarse phase and few sweeps.
 class Spread : public SessionTest {
 protected:
-    std::string largeTool() {
+    std::string slowTool() {
         return write("scene.toml",
                      "name = \"test\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\nheight = 0.9\n"
-                     "[material]\nsettling_time = 0.02\n[tool]\nradius = 0.75\n");
+                     "[material]\nsettling_time = 0.002\n[tool]\nradius = 0.25\n");
     }
     std::unique_ptr<support::ChildProcess> begin() {
-        auto session = start({"--wall", wall(1, 2, "mono"), "--scene", largeTool(), "--device", "script:gis", "--out",
+        auto session = start({"--wall", wall(1, 2, "mono"), "--scene", slowTool(), "--device", "script:gis", "--out",
                               out(), "--no-pictures", "--restarts", "100000", "--restart-window", "0.001"});
         EXPECT_FALSE(session->waitForEvent("link", {{"state", "linked"}}).is_null()) << session->output();
         return session;
@@ -117,7 +118,7 @@ TEST_F(Spread, TheMasterTakesOverFromAServerThatIsKilledInAStep) {
 TEST_F(Spread, ARankIsHealedInAStep) {
     bool inAStep = false;
     for (int frame = 60; frame < 64 && !inAStep; ++frame) {
-        const Ended ended = runToEnd({"--wall", wall(1, 2, "mono"), "--scene", largeTool(), "--device", "script:gis",
+        const Ended ended = runToEnd({"--wall", wall(1, 2, "mono"), "--scene", slowTool(), "--device", "script:gis",
                                       "--out", out(), "--no-pictures", "--pace", "fast", "--steps", "400", "--inject",
                                       "diverge:rank=1,frame=" + std::to_string(frame) + ",bit=12"});
         EXPECT_EQ(ended.status, 0) << ended.output;
@@ -141,8 +142,8 @@ TEST_F(Spread, WithTheFastPaceTheSandDependsOnNoLoad) {
     for (const std::string fault : {"", "slow:rank=1,ms=15"}) {
         SCOPED_TRACE(fault);
         std::vector<std::string> arguments{
-            "--wall", wall(1, 2, "mono"), "--scene", largeTool(), "--device", "script:gis",          "--out",
-            out(),    "--no-pictures",    "--pace",  "fast",      "--steps",  std::to_string(kSteps)};
+            "--wall", wall(1, 2, "mono"), "--scene", slowTool(), "--device", "script:gis",          "--out",
+            out(),    "--no-pictures",    "--pace",  "fast",     "--steps",  std::to_string(kSteps)};
         if (!fault.empty()) {
             arguments.insert(arguments.end(), {"--inject", fault});
         }

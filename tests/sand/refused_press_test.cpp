@@ -26,17 +26,46 @@ bool isRefused(double toolCells, sand::ToolKind kind = sand::ToolKind::sphere) {
     return replica.refusedPress();
 }
 
-TEST(RefusedPress, LeavesTheSandAndIsCountedOnceAStep) {
+/// Presses the tool of a scene into `field`, so many probe units higher than in isRefused(). Returns whether it was
+/// refused.
+bool pressRaised(const scene::Scene& scene, int by, sand::HeightField& field) {
+    sand::ProbePoint at = aboveHighSand(2);
+    at.z += by;
+    const sand::grid::Displacement tool(scene.rules.tuning.tool);
+    return tool.drag(field, sand::Rim::closed, scene.ground.get(), at, at).refused > 0;
+}
+
+/// Returns the depth of the deepest cell below the level [cell].
+double depthOf(const Replica& replica) {
+    return (kHighLevel - replica.surface().heights().lowest) / sand::kUnitsPerCell;
+}
+
+TEST(RefusedPress, DigsAsDeepAsItsSandFitsAndIsCountedOnceAStep) {
     const scene::Scene scene = highScene(10);
     Replica replica(scene);
     replica.apply({.number = 1, .engaged = true, .path = {aboveHighSand(2)}});
     EXPECT_TRUE(replica.refusedPress());
-    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
+    EXPECT_EQ(replica.volume(), scene.terrain.volume());
+    EXPECT_GT(depthOf(replica), 0.5);
+    EXPECT_LT(depthOf(replica), 8);
     replica.apply({.number = 2, .engaged = true, .path = {aboveHighSand(2, 34), aboveHighSand(2, 38)}});
     EXPECT_TRUE(replica.refusedPress());
     EXPECT_GT(replica.surface().refusedPresses().count, 2) << "each sub-step was refused";
     replica.apply({.number = 3, .engaged = true});  // the tool does not move
     EXPECT_FALSE(replica.refusedPress());
+}
+
+TEST(RefusedPress, DigsAsTheLowestToolWhosePressFits) {
+    const scene::Scene scene = highScene(10);
+    sand::HeightField refused = scene.terrain, higher = scene.terrain;
+    EXPECT_TRUE(pressRaised(scene, 0, refused));
+    int by = 1;
+    for (; pressRaised(scene, by, higher); ++by) {
+        ASSERT_TRUE(sameHeights(higher, refused)) << "each such tool digs as deep";
+        higher = scene.terrain;
+    }
+    EXPECT_GT(by, 100) << "the tool is several cells too deep";
+    EXPECT_TRUE(sameHeights(higher, refused));
 }
 
 TEST(RefusedPress, TellsTheLargestRadiusOfTheShapeThatFits) {
@@ -81,7 +110,8 @@ TEST(RefusedPress, IsSeenBesideAWall) {
     replica.apply({.number = 1, .engaged = true, .path = {aboveHighSand(2)}});
     EXPECT_TRUE(replica.refusedPress());
     EXPECT_LT(replica.firstRefusedPress().value().largest.value(), 10 * kProbePerCell);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
+    EXPECT_GT(depthOf(replica), 0.5);
+    EXPECT_EQ(replica.volume(), scene.terrain.volume());
 }
 
 /// Cells that have no room for their share take none. The others take theirs.

@@ -112,7 +112,7 @@ TEST(PathBuilder, DividesTheWayOfAJumpThatNoStepMayHave) {
         EXPECT_EQ(readNs, builder.waits() ? 0 : 2) << "no hand was read on the way";
         EXPECT_TRUE(step.engaged);
         ASSERT_EQ(step.path.size(), 1U);
-        EXPECT_LE(sand::substepsOf(step, tool, true), 8);
+        EXPECT_LE(sand::substepsOf(step, tool, true, sand::kProbePerCell), 8);
         tool = step.path.back();
         // It stays on the line, to the cut-off fraction of each coordinate.
         EXPECT_NEAR(tool.x, tool.z / 3.0, 4);

@@ -63,11 +63,13 @@ struct PlacedTool {
             return x * x + y * y <= 1;
         }));
     }
-    /// Returns the width of the ring around the tool that takes sand [probe unit]. It is two cells. For all tools
-    /// except a sphere it is larger by an eighth of the tool's width.
+    /// Returns the width of the ring around the tool that takes sand [probe unit]. It is two cells, and larger by an
+    /// eighth of the tool's width. A sphere up to 16 cells has no more than two cells, and a larger one no more than
+    /// its radius above 16 cells.
     [[nodiscard]] std::int64_t ring() const {
         const std::int64_t half = sand::isRound(tool.kind) ? tool.radius : tool.halfWidth;
-        return 2 * kProbePerCell + (tool.kind == sphere ? 0 : half / 4);
+        const std::int64_t most = tool.kind == sphere ? std::max(0, tool.radius - 16 * kProbePerCell) : half;
+        return 2 * kProbePerCell + std::min(half / 4, most);
     }
     [[nodiscard]] bool takes(int column, int row) const {
         const Offset offset = offsetOf(column, row);

@@ -176,6 +176,31 @@ TEST(Step, RefusesEveryTruncationOfAnEdit) {
     }
 }
 
+TEST(Step, PathInSubstepsLeavesOutPointsThatAreNear) {
+    const auto along = [](std::initializer_list<int> places) {
+        std::vector<sand::ProbePoint> path;
+        for (const int x : places) {
+            path.push_back({x, 7, 9});
+        }
+        return path;
+    };
+    const auto thinned = [](const std::vector<sand::ProbePoint>& path) { return sand::pathInSubsteps(path, 1000); };
+    const std::vector<sand::ProbePoint> cells = along({0, 100, 200, 300});
+    EXPECT_EQ(sand::pathInSubsteps(cells, sand::kProbePerCell), cells) << "sub-steps of a cell keep all points";
+    EXPECT_EQ(thinned(along({0, 400, 800, 1200, 1600, 2000})), along({0, 800, 1600, 2000}));
+    EXPECT_EQ(thinned(along({0, 500, 1000, 1500})), along({0, 1000, 1500}));
+    EXPECT_EQ(thinned(along({0, 0, 400, 800})), along({0, 0, 800})) << "a press in place stays";
+    EXPECT_EQ(thinned(along({0, 600, 0, 600, 0})), along({0, 600, 0, 600, 0})) << "the length of the path counts";
+    EXPECT_EQ(thinned(along({0, 5000, 5001})), along({0, 5000, 5001}));
+    EXPECT_EQ(thinned(along({0, 5000})), along({0, 5000}));
+    EXPECT_EQ(thinned(along({3})), along({3}));
+    EXPECT_EQ(thinned({}), along({}));
+    EXPECT_EQ(sand::substepsOf({.engaged = true, .path = along({400, 800, 1200})}, {0, 7, 9}, true, 1000), 2);
+    EXPECT_EQ(sand::substepsOf({.engaged = true, .path = along({400, 800, 1200})}, {0, 7, 9}, false, 1000), 2)
+        << "a press in place, and a drag";
+    EXPECT_EQ(sand::substepsOf({.engaged = true, .path = along({5000})}, {0, 7, 9}, true, 1000), 5);
+}
+
 TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
     const sand::Tuning good{7, 11, 13, {.radius = 17}};
     const auto refused = [](const sand::Tuning& tuning) {
@@ -196,7 +221,7 @@ TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
     }
     refused({12, 11, 13, {.radius = 17}});  // the start threshold would be below the threshold
     refused({7, 11, 0, {.radius = 17}});    // a step runs at least one sweep
-    refused({7, 11, sand::kMostSweeps + 1, {.radius = 17}});
+    refused({7, 11, sand::kMostSweepsToRest + 1, {.radius = 17}});
 }
 
 TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {

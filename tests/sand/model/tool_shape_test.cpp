@@ -355,7 +355,7 @@ TEST(ToolShape, ARowOfUndersidesIsEachOfThem) {
         const sand::Offset first{anyOf(-radius, radius), anyOf(-radius, radius)};
         std::array<std::int32_t, 37> row{};
         for (const base::CodePath path : {base::CodePath::baseline, base::fastestCodePath()}) {
-            const sand::TurnedShape shape(tool, path);
+            const sand::TurnedShape shape(tool, sand::TurnedShape::SphereRing::wide, path);
             shape.undersides(z, first, row);
             for (std::int64_t x = 0; x < std::ssize(row); ++x) {
                 ASSERT_EQ(row[static_cast<std::size_t>(x)], shape.underside(z, {first.x + x * kProbePerCell, first.y}))

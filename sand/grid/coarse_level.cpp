@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/grid/coarse_level.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace sand::grid {
+namespace {
+
+/// Returns a / b, rounded down. `b` is positive.
+std::int64_t floorOf(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+
+/// Calls visit(x, y) for each cell of `cells`, row by row.
+template <class Visit>
+void forEach(const CellRect& cells, const Visit& visit) {
+    for (int y = cells.y0; y < cells.y1; ++y) {
+        for (int x = cells.x0; x < cells.x1; ++x) {
+            visit(x, y);
+        }
+    }
+}
+
+}  // namespace
+
+CoarseLevel::CoarseLevel(const Site& site, const CellRect& patch, int side)
+    : site_(site),
+      side_(side),
+      across_(axisOf(patch.x0, patch.x1, site.field.columns())),
+      down_(axisOf(patch.y0, patch.y1, site.field.rows())) {
+    if (across_.count <= 0 || down_.count <= 0) {
+        return;
+    }
+    heights_.emplace(columns(), rows(), site.field.cellSize() * side);
+    if (site.ground != nullptr || across_.before + across_.after + down_.before + down_.after > 0) {
+        ground_.emplace(columns(), rows());
+    }
+    findRange();
+    fill();
+}
+
+CoarseLevel::Axis CoarseLevel::axisOf(int from, int end, int cells) const {
+    const int low = std::max(from, 0), high = std::min(end, cells);
+    const bool mirrored = low > cells - high;  // the far rim is nearer
+    const int near = mirrored ? cells - high : low, far = mirrored ? cells - low : high;
+    const int first = near / side_, last = std::min((far + side_ - 1) / side_, cells / side_);
+    Axis axis{mirrored ? cells - last * side_ : first * side_, last - first};
+    // An open rim has its outflow; the other edges of the patch are closed by walls.
+    const bool open = site_.rules.rim == Rim::open;
+    axis.before = open && axis.first > 0 ? 1 : 0;
+    axis.after = open && axis.first + axis.count * side_ < cells ? 1 : 0;
+    return axis;
+}
+
+CellRect CoarseLevel::cellsOf(int column, int row) const {
+    const int x = across_.first + (column - across_.before) * side_, y = down_.first + (row - down_.before) * side_;
+    return {x, y, x + side_, y + side_};
+}
+
+std::int32_t CoarseLevel::lowest(int x, int y, std::int32_t least) const {
+    return site_.ground == nullptr ? least : std::max(least, site_.ground->bedrock(x, y));
+}
+
+std::int32_t CoarseLevel::highest(int x, int y) const {
+    const Obstacle* const tool = site_.obstacle;
+    if (tool == nullptr || x < tool->cells.x0 || x >= tool->cells.x1 || y < tool->cells.y0 || y >= tool->cells.y1) {
+        return highest_;
+    }
+    const std::int32_t under = tool->row(y)[x - tool->cells.x0];
+    return under == Obstacle::kFree ? highest_ : std::max(std::min(under, highest_), site_.field.height(x, y));
+}
+
+void CoarseLevel::findRange() {
+    lowest_ = kMaxHeight;
+    highest_ = -kMaxHeight;
+    for (int y = down_.first; y < down_.first + down_.count * side_; ++y) {
+        const std::int32_t* const row = site_.field.row(y) + across_.first;
+        for (int x = 0; x < across_.count * side_; ++x) {
+            lowest_ = std::min(lowest_, row[x]);
+            highest_ = std::max(highest_, row[x]);
+        }
+    }
+    floor_ = site_.rules.rim == Rim::open ? -kMaxHeight : lowest_;
+}
+
+void CoarseLevel::fill() {
+    if (site_.obstacle != nullptr) {
+        const CellRect& below = site_.obstacle->cells;
+        const auto coarse = [this](int cell, const Axis& axis) {
+            return static_cast<int>(floorOf(cell - axis.first, side_)) + axis.before;
+        };
+        const CellRect inner{across_.before, down_.before, across_.before + across_.count, down_.before + down_.count};
+        obstacle_.cells = below.empty() ? CellRect{}
+                                        : CellRect{coarse(below.x0, across_), coarse(below.y0, down_),
+                                                   coarse(below.x1 - 1, across_) + 1, coarse(below.y1 - 1, down_) + 1}
+                                              .clippedTo(inner);
+    }
+    if (!obstacle_.cells.empty()) {
+        const int padded = obstacle_.cells.y1 - obstacle_.cells.y0 + 2 * Obstacle::kRowsBeside;
+        obstacle_.underside.assign(static_cast<std::size_t>(obstacle_.stride()) * static_cast<std::size_t>(padded),
+                                   Obstacle::kFree);
+    }
+    forEach({0, 0, columns(), rows()}, [this](int column, int row) {
+        const bool edge = column < across_.before || column >= across_.before + across_.count || row < down_.before ||
+                          row >= down_.before + down_.count;
+        if (edge) {
+            ground_->setWall(column, row);
+            return;
+        }
+        std::int64_t sand = 0;
+        forEach(cellsOf(column, row), [&](int x, int y) { sand += site_.field.height(x, y); });
+        heights_->setHeight(column, row, static_cast<std::int32_t>(floorOf(sand, std::int64_t{side_} * side_)));
+        if (site_.ground != nullptr) {
+            fillGround(column, row);
+        }
+        if (!obstacle_.cells.clippedTo({column, row, column + 1, row + 1}).empty()) {
+            fillObstacle(column, row, sand);
+        }
+    });
+    if (!obstacle_.cells.empty()) {
+        obstacle_.findReached();
+    }
+}
+
+void CoarseLevel::fillGround(int column, int row) {
+    std::int64_t least = 0;
+    bool wall = false, rock = false;
+    forEach(cellsOf(column, row), [&](int x, int y) {
+        wall |= site_.ground->isWall(x, y);
+        rock |= site_.ground->bedrock(x, y) > floor_;
+        least += lowest(x, y, floor_);
+    });
+    if (wall) {
+        ground_->setWall(column, row);
+    } else if (rock) {
+        // Rounded up, so that the sand above it is never more than that of the cells.
+        const auto mean = static_cast<std::int32_t>(-floorOf(-least, std::int64_t{side_} * side_));
+        ground_->setBedrock(column, row, std::min(mean, heights_->height(column, row)));
+    }
+}
+
+/// Sets the underside so that the room below it is that of the cells. `sand` is the sum of their heights.
+void CoarseLevel::fillObstacle(int column, int row, std::int64_t sand) {
+    std::int64_t room = 0;
+    bool below = false;
+    forEach(cellsOf(column, row), [&](int x, int y) {
+        const CellRect& cells = site_.obstacle->cells;
+        below |= x >= cells.x0 && x < cells.x1 && y >= cells.y0 && y < cells.y1 &&
+                 site_.obstacle->row(y)[x - cells.x0] != Obstacle::kFree;
+        room += highest(x, y);
+    });
+    if (below) {
+        const std::int64_t more = floorOf(room - sand, std::int64_t{side_} * side_);
+        const auto first = static_cast<std::size_t>(obstacle_.row(row) - obstacle_.underside.data());
+        obstacle_.underside[first + static_cast<std::size_t>(column - obstacle_.cells.x0)] =
+            static_cast<std::int32_t>(heights_->height(column, row) + more);
+    }
+}
+
+CoarseLevel::Result CoarseLevel::sweep(int sweeps) {
+    Result result;
+    if (!heights_) {
+        return result;
+    }
+    const HeightField before = *heights_;
+    Rules rules = site_.rules;
+    const auto larger = [this](std::int32_t threshold) {
+        return static_cast<std::int32_t>(std::min<std::int64_t>(std::int64_t{threshold} * side_, kLargestThreshold));
+    };
+    rules.columns = columns();
+    rules.rows = rows();
+    rules.tuning.threshold = larger(rules.tuning.threshold);
+    rules.tuning.startThreshold = larger(rules.tuning.startThreshold);
+    Erosion::Options how = site_.how;
+    how.ground = ground_ ? &*ground_ : nullptr;
+    Erosion erosion(*heights_, rules, how);
+    const Obstacle* const tool = obstacle_.cells.empty() ? nullptr : &obstacle_;
+    const std::int64_t area = std::int64_t{side_} * side_;
+    result.outflow = area * erosion.sweep(*heights_, sweeps, tool);
+    forEach(heights_->bounds(), [&](int column, int row) {
+        const std::int64_t change = std::int64_t{heights_->height(column, row)} - before.height(column, row);
+        if (change != 0) {
+            shareOut(column, row, area * change);
+            result.changed = result.changed.joinedWith(cellsOf(column, row));
+        }
+    });
+    return result;
+}
+
+/// Shares out `change` evenly over the cells that have room for it, until nothing is left. Sand that falls over an open
+/// rim may leave a cell lower than all of the patch.
+void CoarseLevel::shareOut(int column, int row, std::int64_t change) {
+    const CellRect cells = cellsOf(column, row);
+    std::int32_t least = lowest_;
+    const auto limit = [&](int x, int y) { return change > 0 ? highest(x, y) : lowest(x, y, least); };
+    std::int64_t left = change;
+    while (left != 0) {
+        std::int64_t count = 0;
+        forEach(cells, [&](int x, int y) {
+            const std::int32_t height = site_.field.height(x, y), most = limit(x, y);
+            count += (change > 0 ? height < most : height > most) ? 1 : 0;
+        });
+        if (count == 0 && change < 0 && least > floor_) {
+            least = floor_;
+            continue;
+        }
+        if (count == 0) {  // the range, the rock and the underside of a coarse cell are those of its cells
+            throw std::logic_error("CoarseLevel: the change of a coarse cell does not fit into its cells");
+        }
+        const std::int64_t each = left / count;
+        std::int64_t odd = left - each * count;
+        forEach(cells, [&](int x, int y) {
+            const std::int64_t height = site_.field.height(x, y), most = limit(x, y);
+            if (left == 0 || !(change > 0 ? height < most : height > most)) {
+                return;
+            }
+            const std::int64_t wanted = height + each + (odd > 0 ? 1 : odd < 0 ? -1 : 0);
+            odd -= odd > 0 ? 1 : odd < 0 ? -1 : 0;
+            const std::int64_t now = change > 0 ? std::min(wanted, most) : std::max(wanted, most);
+            site_.field.setHeight(x, y, static_cast<std::int32_t>(now));
+            left -= now - height;
+        });
+    }
+}
+
+}  // namespace sand::grid

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sand/grid/displacement.hpp"
+#include "sand/grid/erosion.hpp"
+#include "sand/model/ground.hpp"
+#include "sand/model/height_field.hpp"
+#include "sand/model/rules.hpp"
+
+namespace sand::grid {
+
+/// One level of a coarse phase: sand slides over a patch of the field, on square groups of cells.
+///
+/// A coarse cell is as high as the mean of its cells. Its change is shared out over them. So the volume is exact. No
+/// cell leaves the range of the patch's heights, its rock or the underside of the tool. A coarse cell with a wall is a
+/// wall. Coarse cells are counted from the nearer rim of the field on each axis. Cells that are left over lie at
+/// the farther rim. Used by one thread.
+class CoarseLevel {
+public:
+    /// The field, and ground and obstacle, which may be null. All must outlive the level.
+    struct Site {
+        HeightField& field;
+        const Rules& rules;
+        const Ground* ground;
+        const Obstacle* obstacle;
+        Erosion::Options how;  // of the coarse cells; `ground` is ignored
+    };
+    /// `side` is the side of a coarse cell [cell].
+    CoarseLevel(const Site& site, const CellRect& patch, int side);
+
+    struct Result {
+        CellRect changed;          // cells that may have changed
+        std::int64_t outflow = 0;  // volume that fell over an open rim [unit · cell]
+    };
+    /// Runs `sweeps` sweeps.
+    Result sweep(int sweeps);
+
+private:
+    /// Cells along one axis: `count` coarse cells from cell `first`. Up to one coarse cell of wall lies before and
+    /// after them.
+    struct Axis {
+        int first = 0, count = 0, before = 0, after = 0;
+    };
+    [[nodiscard]] Axis axisOf(int from, int end, int cells) const;
+    [[nodiscard]] CellRect cellsOf(int column, int row) const;
+    [[nodiscard]] int columns() const { return across_.before + across_.count + across_.after; }
+    [[nodiscard]] int rows() const { return down_.before + down_.count + down_.after; }
+
+    /// Returns the lowest height to which a cell may go, at least `least`.
+    [[nodiscard]] std::int32_t lowest(int x, int y, std::int32_t least) const;
+    /// Returns the highest height to which a cell may go.
+    [[nodiscard]] std::int32_t highest(int x, int y) const;
+    void findRange();
+    void fill();
+    void fillGround(int column, int row);
+    void fillObstacle(int column, int row, std::int64_t sand);
+    void shareOut(int column, int row, std::int64_t change);
+
+    Site site_;
+    int side_;
+    Axis across_, down_;
+    std::int32_t lowest_ = 0, highest_ = 0;  // of the patch [unit]
+    std::int32_t floor_ = 0;                 // lowest height that sand without rock can come to [unit]
+    std::optional<HeightField> heights_;     // nullopt if the patch has less than a coarse cell
+    std::optional<Ground> ground_;
+    Obstacle obstacle_{};
+};
+
+}  // namespace sand::grid

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/model/sweep_plan.hpp"
+
+#include <algorithm>
+
+namespace sand {
+namespace {
+
+constexpr std::int32_t kFineSweeps = 8;          // after a coarse phase
+constexpr std::int32_t kMostCoarseSweeps = 64;   // of the coarsest level, if a coarser one would still resolve the tool
+constexpr std::int32_t kLeastCoarseSweeps = 4;  // of the coarsest level
+
+/// Returns the sweeps of a level with cells of `side` cells that carry sand as far as `all` sweeps of the field.
+std::int32_t sweepsAt(std::int32_t side, std::int32_t all) { return (all + side * side - 1) / (side * side); }
+
+}  // namespace
+
+SweepPlan gridSweepPlan(const Tuning& tuning) {
+    const std::int32_t all = tuning.sweepsPerStep, cells = tuning.tool.radius / kProbePerCell;
+    const std::int32_t still = std::clamp(cells, kFineSweeps, std::int32_t{64});
+    if (tuning.tool.radius <= kLargestPlainTool || all <= still) {
+        return tinSweepPlan(tuning);
+    }
+    std::int32_t side = SweepPlan::kFinestSide;
+    // At least six cells of a level lie across the radius.
+    while (sweepsAt(side, all) > kMostCoarseSweeps && 2 * side * 6 <= cells) {
+        side *= 2;
+    }
+    return {kFineSweeps, still, side, std::clamp(sweepsAt(side, all), kLeastCoarseSweeps, kMostSweeps)};
+}
+
+SweepPlan tinSweepPlan(const Tuning& tuning) {
+    const std::int32_t sweeps = std::min(tuning.sweepsPerStep, kMostSweeps);
+    return {sweeps, sweeps, 0, 0};
+}
+
+}  // namespace sand

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "sand/model/tuning.hpp"
+
+namespace sand {
+
+/// Numbers of sweeps in a step, on the field and on coarser cells. All replicas compute them from the same integers.
+///
+/// Sand beside a tool of R cells needs about R² sweeps to come to rest. A large tool of a height field therefore has a
+/// coarse phase. It comes before the sweeps of a step that moves the tool. Its sweeps on larger cells carry the sand
+/// over long distances. docs/sand.md#large-tools has the law.
+struct SweepPlan {
+    static constexpr std::int32_t kFinestSide = 4;    // [cell], side of the cells of the finest coarse level
+    static constexpr std::int32_t kFinerSweeps = 16;  // of each level but the coarsest
+
+    std::int32_t moved = 0;  // sweeps that a step owes which moves the tool
+    std::int32_t still = 0;  // sweeps that any other step owes
+    /// Side of the cells of the coarsest level [cell], a power of two times kFinestSide; 0 without a coarse phase. Each
+    /// further level has half the side of the one before.
+    std::int32_t coarsest = 0;
+    std::int32_t coarsestSweeps = 0;
+
+    [[nodiscard]] bool hasCoarsePhase() const { return coarsest > 0; }
+    /// Returns the sweeps of the level with this side.
+    [[nodiscard]] std::int32_t sweepsOf(std::int32_t side) const {
+        return side == coarsest ? coarsestSweeps : kFinerSweeps;
+    }
+    friend bool operator==(const SweepPlan&, const SweepPlan&) = default;
+};
+
+/// Returns the plan of a height field.
+[[nodiscard]] SweepPlan gridSweepPlan(const Tuning& tuning);
+/// Returns the plan of a TIN, which has no coarse phase.
+[[nodiscard]] SweepPlan tinSweepPlan(const Tuning& tuning);
+
+}  // namespace sand
