@@ -41,6 +41,7 @@ std::vector<Curve> allCurves() {
          {512, 1024, 2048},
          10,
          bench::edit},
+        {"large-tools", "time per step of large tools, and how far the sand is from that of all sweeps", {512, 1024}, 1, bench::largeTools},
         {"dig", "time per step of digging, and share of sand that has yet to move", {512, 2048}, 10, bench::dig},
         {"held-tools", "sand that runs past a tool held on a slope, by run time", {96}, 1, bench::heldTools},
         {"throughput",

@@ -17,6 +17,7 @@ void bounds(const Settings& settings, Csv& csv);
 void heldTools(const Settings& settings, Csv& csv);
 void edit(const Settings& settings, Csv& csv);
 void dig(const Settings& settings, Csv& csv);
+void largeTools(const Settings& settings, Csv& csv);
 void throughput(const Settings& settings, Csv& csv);
 void massDrift(const Settings& settings, Csv& csv);
 void certificate(const Settings& settings, Csv& csv);

@@ -148,7 +148,7 @@ scene::Scene stirred(const scene::Scene& scene, std::uint32_t seed) {
 }
 
 void explainSteps(const scene::Scene& scene, const Settings& settings, Explanation& rows) {
-    const std::string sweepsPerStep = fmt::format("{} sweeps at most", scene.rules.tuning.sweepsPerStep);
+    const std::string sweepsPerStep = fmt::format("{} sweeps at most", scene.rules.sweepPlan().still);
     const auto runs = static_cast<std::size_t>(settings.runs);
     std::uint64_t hash = 0;
 
@@ -171,7 +171,8 @@ void explainSteps(const scene::Scene& scene, const Settings& settings, Explanati
     };
     std::vector<sand::Step> stroke{{1, 0, true, {at(0.3)}}};
     const auto press = timeSteps(replica, stroke, hash);
-    rows.step("one small edit", press, "the tool presses half of itself in; " + sweepsPerStep);
+    rows.step("one small edit", press,
+              fmt::format("the tool presses half of itself in; {} sweeps at most", scene.rules.sweepPlan().moved));
     stroke.clear();
     for (std::size_t i = 0; i < runs; ++i) {
         stroke.push_back({1, 0, true, {at(0.3 + 0.4 * static_cast<double>(i + 1) / static_cast<double>(runs))}});
@@ -196,7 +197,7 @@ void explain(const Settings& settings, Csv& csv) {
         csv.note("warning: " + warning);
     }
     csv.note(fmt::format("scene: {}, {} sweeps per step, tool of {:.3g} cells", scene.name,
-                         scene.rules.tuning.sweepsPerStep,
+                         scene.rules.sweepPlan().still,
                          static_cast<double>(scene.rules.tuning.tool.radius) / kProbePerCell));
     csv.note(fmt::format("step: median CPU time of one thread, hash included, of {} steps unless `why` says otherwise",
                          settings.runs));
