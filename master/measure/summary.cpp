@@ -99,9 +99,9 @@ RefusedPressPart refusedPressOf(const sand::Replica& replica) {
 
 std::string describe(const RefusedPressPart& press) {
     // A TIN knows no largest radius.
-    std::string text = fmt::format("the cells around the {} of radius {:.4g} cannot hold its sand, so the tool {}",
-                                   press.shape, press.radius,
-                                   press.largest ? "digs less deep than the hand" : "passes through it");
+    std::string text =
+        fmt::format("the cells around the {} of radius {:.4g} cannot hold its sand, so the tool {}", press.shape,
+                    press.radius, press.largest ? "digs less deep than the hand" : "passes through it");
     if (press.largest) {
         text += *press.largest > 0 ? fmt::format("; the largest {} that fits there has a radius of {:.4g}", press.shape,
                                                  *press.largest)

@@ -8,8 +8,8 @@
 
 namespace sand {
 
-/// A press of the tool whose sand the cells around it cannot take, because they would rise above kMaxHeight. A tool of a
-/// height field digs only as deep as its sand fits, and passes through the rest. In a TIN all of the sand stays.
+/// A press of the tool whose sand the cells around it cannot take, because they would rise above kMaxHeight. A tool of
+/// a height field digs only as deep as its sand fits, and passes through the rest. In a TIN all of the sand stays.
 ///
 /// It is no state: neither the hash nor a snapshot contains it.
 struct RefusedPress {

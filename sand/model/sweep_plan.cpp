@@ -6,8 +6,8 @@
 namespace sand {
 namespace {
 
-constexpr std::int32_t kFineSweeps = 8;          // after a coarse phase
-constexpr std::int32_t kMostCoarseSweeps = 64;   // of the coarsest level, if a coarser one would still resolve the tool
+constexpr std::int32_t kFineSweeps = 8;         // after a coarse phase
+constexpr std::int32_t kMostCoarseSweeps = 64;  // of the coarsest level, if a coarser one would still resolve the tool
 constexpr std::int32_t kLeastCoarseSweeps = 4;  // of the coarsest level
 
 /// Returns the sweeps of a level with cells of `side` cells that carry sand as far as `all` sweeps of the field.

@@ -155,9 +155,10 @@ std::uint64_t hashOfLargeTool(const Variant& variant, const Options& options) {
 TEST(Golden, ALargeToolIsTheSameEverywhere) {
     using enum sand::Rim;
     constexpr std::int32_t kOne = sand::kUnitsPerCell;
-    for (const Variant& variant : {Variant{"level", kOne, kOne, false, false, closed, "5edd47890a84c590"},
-                                   {"open rim and band", kOne, kOne + kOne / 10, false, false, open, "946eb5b465931d24"},
-                                   {"rock and walls", kOne, kOne, true, true, open, "e142957e1e1e435b"}}) {
+    for (const Variant& variant :
+         {Variant{"level", kOne, kOne, false, false, closed, "5edd47890a84c590"},
+          {"open rim and band", kOne, kOne + kOne / 10, false, false, open, "946eb5b465931d24"},
+          {"rock and walls", kOne, kOne, true, true, open, "e142957e1e1e435b"}}) {
         SCOPED_TRACE(variant.name);
         expectHash(variant.hash, [&](const Options& how) { return hashOfLargeTool(variant, how); });
     }
