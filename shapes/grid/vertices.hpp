@@ -111,8 +111,8 @@ private:
     int blocksAcross_;
     std::vector<float> heights_;       // [scene unit], row by row
     std::vector<HeightRange> ranges_;  // of each block, row by row; they bound the heights of a large part quickly
-    // Of each block's last column. The cells under a chunk begin one cell west of a block, and to read a column of
-    // heights_ costs a cache miss a row.
+    // Heights of each block's last column. The cells under a chunk begin one cell west of a block, and to read a column
+    // of heights_ costs a cache miss a row.
     std::vector<HeightRange> lastColumns_;
     std::vector<std::uint8_t> holes_;  // 1 for a cell without ground; empty if all have ground
     mutable std::int64_t placesRead_ = 0;

@@ -86,7 +86,8 @@ TEST(RefusedPress, TellsTheLargestRadiusOfTheShapeThatFits) {
     }
 }
 
-/// What was refused is not in the state: a replica that has computed a radius equals one that is given the sand.
+/// The state does not contain the refused press: a replica that has computed a radius equals one that is given the
+/// sand.
 TEST(RefusedPress, IsNoPartOfTheState) {
     const scene::Scene scene = highScene(10);
     Replica replica(scene), other(scene);
