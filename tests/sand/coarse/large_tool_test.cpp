@@ -253,6 +253,21 @@ TEST(LargeTool, IsUndone) {
     EXPECT_EQ(sand.outflow(), 0);
 }
 
+/// The patch reaches into a tile of the undo that the tool does not touch.
+TEST(LargeTool, IsUndoneWhereOnlyItsCoarsePhaseMovesSand) {
+    scene::Scene scene = sceneOf({"undone"});
+    for (int y = 120; y < 136; ++y) {
+        for (int x = 193; x < 201; ++x) {
+            scene.terrain.setHeight(x, y, 30 * sand::kUnitsPerCell);
+        }
+    }
+    sand::Replica sand(scene);
+    sand.apply({.number = 1, .engaged = true, .path = {sand::probePoint(140, 128, 0)}});
+    EXPECT_LT(samples::fieldOf(sand).height(196, 128), 28 * sand::kUnitsPerCell);
+    sand.apply({.number = 2, .engaged = false, .edit = sand::Edit::undo});
+    EXPECT_TRUE(sameHeights(samples::fieldOf(sand), scene.terrain));
+}
+
 TEST(LargeTool, SlidesAfterItIsReplacedOrTurned) {
     Case given{"edits"};
     scene::Scene scene = sceneOf(given);

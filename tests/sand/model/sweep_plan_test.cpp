@@ -37,6 +37,8 @@ TEST(SweepPlan, CarriesSandAsFarAsAllSweeps) {
     EXPECT_EQ(usualPlan(150), (SweepPlan{8, 64, 8, 59}));
     EXPECT_EQ(usualPlan(400), (SweepPlan{8, 64, 32, 27}));
     EXPECT_EQ(usualPlan(2048), (SweepPlan{8, 64, 128, 43}));
+    EXPECT_EQ(sand::gridSweepPlan(tuningOf(20, 10000)), (SweepPlan{8, 20, 4, 625})) << "larger cells do not resolve it";
+    EXPECT_EQ(sand::gridSweepPlan(tuningOf(20, sand::kMostSweepsToRest)), (SweepPlan{8, 20, 4, sand::kMostSweeps}));
     for (std::int32_t cells = 17; cells <= 2048; ++cells) {
         const SweepPlan plan = usualPlan(cells);
         ASSERT_GE(plan.coarsest * plan.coarsest * plan.coarsestSweeps, (cells * cells + 5) / 6) << cells;
