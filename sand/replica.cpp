@@ -249,7 +249,9 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
     moved();
     const Tool* const obstacle = engaged_ ? &here : nullptr;
     if (displaces && rules_.sweepPlan().hasCoarsePhase()) {
-        surface_->slideCoarsely(wayOf(step, before, wasEngaged), obstacle, probe_);
+        // A larger tool from before a tune has left sand farther away.
+        const std::int32_t smaller = std::max(toolBefore.radius - here.radius, 0) / kProbePerCell;
+        surface_->slideCoarsely(wayOf(step, before, wasEngaged).grownBy(2 * smaller), obstacle, probe_);
     }
     const Swept swept = surface_->sweep({sweeps, owed_.done, owed_.whole}, obstacle, probe_);
     lastWork_.sweeps = swept.sweeps;

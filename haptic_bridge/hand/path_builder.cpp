@@ -89,11 +89,14 @@ std::int64_t PathBuilder::take(sand::Step& step, const SubstepLimit& limit) {
     const std::int64_t until = waiting_.front().readNs + mostNs_;
     const bool changed = waiting_.front().engaged != engaged_;
     engaged_ = waiting_.front().engaged;
-    std::int64_t substeps = 0;
+    step.engaged = engaged_;
+    const sand::ProbePoint from = last_;
     while (!waiting_.empty() && waiting_.front().engaged == engaged_ && waiting_.front().readNs < until) {
         const HandSample sample = waiting_.front();
         if (engaged_ && sample.probe != last_) {
-            substeps += changed && path.empty() ? 1 : sand::substepsBetween(last_, sample.probe, limit.length);
+            path.push_back(sample.probe);
+            const std::int64_t substeps = sand::substepsOf(step, from, !changed, limit.length);
+            path.pop_back();
             if (path.empty() && substeps > limit.most) {
                 path.push_back(approach(sample.probe, limit));  // the sample waits for the next step
                 break;

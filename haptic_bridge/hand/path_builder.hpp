@@ -74,7 +74,7 @@ private:
     void thinWaiting();
     [[nodiscard]] std::int64_t waitingNs() const { return waiting_.back().readNs - waiting_.front().readNs; }
     void letGoIfFarAhead();
-    /// Brings the tool nearer to `goal` by at most `substeps` sub-steps. Returns the point that it reaches.
+    /// Brings the tool nearer to `goal` by the most sub-steps of `limit`. Returns the point that it reaches.
     sand::ProbePoint approach(const sand::ProbePoint& goal, const SubstepLimit& limit);
 
     std::int64_t mostNs_;  // [ns] of hand movement that a step may hold

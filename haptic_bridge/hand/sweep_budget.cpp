@@ -8,10 +8,11 @@ namespace {
 
 constexpr double kMostGrowth = 2;
 
-/// Returns the area of sand that moves after a drag, in areas of the tool. A sub-step brings the tool a cell farther.
+/// Returns the area of sand that moves after a drag, in areas of the tool.
 double areaOf(std::int64_t substeps, const sand::Tool& tool) {
-    const double across = std::max(2.0 * tool.radius / sand::kProbePerCell, 1.0);  // [cell]
-    return 1 + static_cast<double>(substeps) / across;
+    const double across = std::max(2.0 * tool.radius / sand::kProbePerCell, 1.0);                 // [cell]
+    const double farther = static_cast<double>(sand::substepOnGrid(tool)) / sand::kProbePerCell;  // [cell], a sub-step
+    return 1 + static_cast<double>(substeps) * farther / across;
 }
 
 }  // namespace

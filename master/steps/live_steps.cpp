@@ -218,7 +218,12 @@ ArrivedSteps LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most)
         next.step.edit = edits_.next();
         next.step.sweeps = budget_.sweepsOf(next.step, replica);
         taken.add(next.step);
-        more = !next.step.edit.any() && !replica.owed().any() && next.step.sweeps == replica.mostSweeps(next.step) &&
+        // With a coarse phase the sweeps of the next step depend on whether it moves the tool, as the replica will know
+        // it.
+        const bool known = !replica.rules().sweepPlan().hasCoarsePhase() ||
+                           (next.step.engaged == replica.engaged() && !next.step.heading);
+        more = known && !next.step.edit.any() && !replica.owed().any() &&
+               next.step.sweeps == replica.mostSweeps(next.step) &&
                budget_.fits(taken.all(), {next.step.sweeps, 0}, replica.tool());
     }
     return steps;

@@ -8,6 +8,9 @@ namespace {
 
 constexpr std::int32_t kFineSweeps = 8;         // after a coarse phase
 constexpr std::int32_t kMostCoarseSweeps = 64;  // of the coarsest level, if a coarser one would still resolve the tool
+// Sand would flow through a tool that is narrower than a few coarse cells.
+constexpr std::int32_t kNarrowest = 2 * SweepPlan::kFinestSide;  // [cell], half width of a tool with a coarse phase
+constexpr std::int32_t kAcross = 6;             // cells of a level across half of the width, if its side was doubled
 constexpr std::int32_t kLeastCoarseSweeps = 4;  // of the coarsest level
 
 /// Returns the sweeps of a level with cells of `side` cells that carry sand as far as `all` sweeps of the field.
@@ -18,12 +21,12 @@ std::int32_t sweepsAt(std::int32_t side, std::int32_t all) { return (all + side 
 SweepPlan gridSweepPlan(const Tuning& tuning) {
     const std::int32_t all = tuning.sweepsPerStep, cells = tuning.tool.radius / kProbePerCell;
     const std::int32_t still = std::clamp(cells, kFineSweeps, std::int32_t{64});
-    if (tuning.tool.radius <= kLargestPlainTool || all <= still) {
+    const std::int32_t halfWidth = isRound(tuning.tool.kind) ? cells : tuning.tool.halfWidth / kProbePerCell;
+    if (tuning.tool.radius <= kLargestPlainTool || halfWidth < kNarrowest || all <= still) {
         return tinSweepPlan(tuning);
     }
     std::int32_t side = SweepPlan::kFinestSide;
-    // At least six cells of a level lie across the radius.
-    while (sweepsAt(side, all) > kMostCoarseSweeps && 2 * side * 6 <= cells) {
+    while (sweepsAt(side, all) > kMostCoarseSweeps && 2 * side * kAcross <= halfWidth) {
         side *= 2;
     }
     return {kFineSweeps, still, side, std::clamp(sweepsAt(side, all), kLeastCoarseSweeps, kMostSweeps)};

@@ -86,7 +86,9 @@ private:
 
 /// Returns how many times as many cells the tool moves on the whole field as on a part, which may be smaller than it.
 double moreOnTheField(const sand::Start& field, const sand::Start& part) {
-    const int width = 2 * part.rules.tuning.tool.radius / sand::kProbePerCell;
+    // A coarse phase slides sand up to two radii from the tool.
+    const int radii = part.rules.sweepPlan().hasCoarsePhase() ? 4 : 2;
+    const int width = radii * part.rules.tuning.tool.radius / sand::kProbePerCell;
     const auto more = [width](int cells, int ofPart) {
         return std::max(1.0, static_cast<double>(std::min(cells, width)) / ofPart);
     };

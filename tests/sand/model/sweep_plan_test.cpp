@@ -53,6 +53,19 @@ TEST(SweepPlan, HasNoCoarsePhaseIfFewSweepsAreEnough) {
     EXPECT_EQ(sand::gridSweepPlan(tuningOf(400, 64)), (SweepPlan{64, 64, 0, 0}));
 }
 
+TEST(SweepPlan, HasCellsThatResolveANarrowTool) {
+    const auto planOf = [](double width) {
+        sand::Tuning tuning = tuningOf(200, 6667);
+        tuning.tool.kind = sand::ToolKind::rectangle;
+        tuning.tool.halfWidth = static_cast<std::int32_t>(tuning.tool.radius * width);
+        return sand::gridSweepPlan(tuning);
+    };
+    EXPECT_EQ(planOf(1).coarsest, 16);
+    EXPECT_EQ(planOf(0.25), (SweepPlan{8, 64, 8, 105}));
+    EXPECT_EQ(planOf(0.05), (SweepPlan{8, 64, 4, 417}));
+    EXPECT_EQ(planOf(0.03), (SweepPlan{4096, 4096, 0, 0})) << "it is narrower than two of the smallest cells";
+}
+
 TEST(SweepPlan, LetsAStepOfATinRunAllSweeps) {
     sand::Rules rules;
     rules.tuning = tuningOf(61, 621);
