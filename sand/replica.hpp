@@ -35,7 +35,7 @@ struct StateHead {
         visit("state version", base::constant(kStateVersion, "that of this release"));
         members(it, visit);
     }
-    /// Visits all but the version, for the state hash.
+    /// Visits all members that the state hash covers: all but the version.
     template <class Self, class Visit>
     static void members(Self& it, Visit& visit) {
         constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 62;  // so that the number of a step never overflows
@@ -140,8 +140,9 @@ public:
     /// Returns whether sweeps have found all sand at rest. The next sweeps then visit no block of a height field and no
     /// edge of a TIN. Returns false before the first sweep, even if the sand is at rest.
     [[nodiscard]] bool settled() const { return surface_->settled(); }
-    /// Returns whether the last step has changed nothing but its number, and the next one would not either, unless it
-    /// moves the tool or has an edit. Only steps without a path, a heading or an edit may be left out then.
+    /// Returns whether the last step has changed its number alone, and the next one would do the same. A step that
+    /// moves the tool or has an edit may change more. Only steps without a path, a heading or an edit may be left out
+    /// then.
     [[nodiscard]] bool atRest() const { return surface_->atRest() && !owed_.any() && lastWork_ == StepWork{}; }
     /// Returns whether a settle continues in the next step.
     [[nodiscard]] bool settling() const { return owed_.untilRest(); }

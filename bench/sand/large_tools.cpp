@@ -15,6 +15,7 @@
 #include "sand/grid/coarse_level.hpp"
 #include "sand/grid/displacement.hpp"
 #include "sand/grid/erosion.hpp"
+#include "tests/support/sand/strokes.hpp"
 
 namespace bench {
 namespace {
@@ -29,6 +30,7 @@ struct DigLaw {
     std::string name;
     std::vector<std::pair<int, int>> levels;  // side [cell] and sweeps
     int moved, still;                         // [sweep]
+    int nearer = 0;                           // by how much the patch is smaller on each side [cell]
 };
 
 /// Sand and borders in which a tool digs.
@@ -131,7 +133,7 @@ private:
             const int x = at.x >> sand::kProbeBits, y = at.y >> sand::kProbeBits;
             way = way.joinedWith({x, y, x + 1, y + 1});
         }
-        const sand::CellRect patch = way.grownBy(displacement_.reachOfCoarsePhase());
+        const sand::CellRect patch = way.grownBy(displacement_.reachOfCoarsePhase() - law.nearer);
         const sand::grid::CoarseLevel::Site site{field_, rules_, ground_.get(), tool, {}};
         for (const auto& [side, sweeps] : law.levels) {
             erosion_.touch(sand::grid::CoarseLevel(site, patch, side).sweep(sweeps).changed);
@@ -148,7 +150,8 @@ private:
     int steps_ = 0;
 };
 
-/// Returns the law of a step with all sweeps, the one that is built, and the built one with one more level.
+/// Returns the law of a step with all sweeps and the one that is built. Adds laws with one more level, with a smaller
+/// patch, and without coarse cells.
 std::vector<DigLaw> lawsOf(const DigCase& given) {
     const sand::SweepPlan plan = given.rules(sand::HeightField(given.place.side, given.place.side, 1.0)).sweepPlan();
     std::vector<DigLaw> laws{{"all sweeps", {}, given.allSweeps(), plan.still}};
@@ -158,13 +161,18 @@ std::vector<DigLaw> lawsOf(const DigCase& given) {
             built.levels.emplace_back(side, plan.sweepsOf(side));
         }
         laws.push_back(built);
+        DigLaw nearer = built;
+        nearer.nearer = given.radius() / 2;
+        laws.push_back(nearer);
         built.levels.emplace_back(2, 8);
         laws.push_back(built);
+        laws.push_back({"capped", {}, plan.still, plan.still});
     }
     for (DigLaw& law : laws) {
         for (const auto& [side, sweeps] : law.levels) {
             law.name += fmt::format("{}{}:{}", law.name.empty() ? "" : " ", side, sweeps);
         }
+        law.name += law.nearer > 0 ? " near" : "";
     }
     return laws;
 }
@@ -179,6 +187,7 @@ struct Dug {
 Dug digBy(const DigLaw& law, const DigCase& given) {
     CircleDigger digger(given);
     std::vector<double> seconds;
+    seconds.reserve(kStrokeSteps);
     for (int i = 0; i < kStrokeSteps; ++i) {
         seconds.push_back(secondsOf([&] { digger.dig(law); }));
     }
@@ -186,26 +195,6 @@ Dug digBy(const DigLaw& law, const DigCase& given) {
     dug.restSeconds = secondsOf([&] { dug.stepsToRest = digger.lift(law); });
     dug.rest = digger.field();
     return dug;
-}
-
-/// Returns the sum of |height - full| over the sum of |full| [%], on sand that was level.
-double apart(const sand::HeightField& field, const sand::HeightField& full) {
-    double apart = 0, moved = 0;
-    for (int y = 0; y < field.rows(); ++y) {
-        for (int x = 0; x < field.columns(); ++x) {
-            apart += std::abs(double(field.height(x, y)) - full.height(x, y));
-            moved += std::abs(double(full.height(x, y)));
-        }
-    }
-    return 100 * apart / moved;
-}
-
-double highest(const sand::HeightField& field) {
-    std::int32_t highest = -sand::kMaxHeight;
-    for (int y = 0; y < field.rows(); ++y) {
-        highest = std::max(highest, *std::max_element(field.row(y), field.row(y) + field.columns()));
-    }
-    return double(highest) / sand::kUnitsPerCell;
 }
 
 void measure(const DigCase& given, Csv& csv) {
@@ -217,8 +206,9 @@ void measure(const DigCase& given, Csv& csv) {
         full = full ? full : dug;
         csv.row(given.place.name, kind, given.place.side, given.radius(), law.name, law.moved,
                 1e3 * quantile(dug.seconds, 0.5), 1e3 * quantile(dug.seconds, 0.99),
-                quantile(dug.seconds, 0.5) / quantile(full->seconds, 0.5), apart(dug.stroke, full->stroke),
-                apart(dug.rest, full->rest), highest(dug.stroke), highest(dug.stroke) / highest(full->stroke),
+                quantile(dug.seconds, 0.5) / quantile(full->seconds, 0.5),
+                100 * samples::apart(dug.stroke, full->stroke), 100 * samples::apart(dug.rest, full->rest),
+                samples::highest(dug.stroke), samples::highest(dug.stroke) / samples::highest(full->stroke),
                 dug.stepsToRest, 1e3 * dug.restSeconds);
     }
 }
@@ -236,7 +226,9 @@ void largeTools(const Settings& settings, Csv& csv) {
                     "and ellipsoid 0.8 radii deep, the other tools 0.2; talus 34 degrees",
                     kStrokeSteps, kFieldSpeed));
     csv.note(
-        "law: coarse levels, each with the side of its cells and its sweeps; all sweeps: R²/6 sweeps of the field");
+        "law: coarse levels, each with the side of its cells and its sweeps; all sweeps: R²/6 sweeps of the field; "
+        "near: with a patch that is half a radius smaller on each side; capped: without coarse cells, in each step as "
+        "many sweeps as the built law has without a movement");
     csv.note("ms: CPU time of one thread per step, without the hash; ratio: of the p50 to that of all sweeps");
     csv.note(
         "behind, at_end: sum of |height - height with all sweeps| over the sum of its |height|, at the end of the "

@@ -53,14 +53,15 @@ public:
     /// the last sample was read [ns], or 0 if the step has no sample that was read. If no sample waits, the hand is
     /// where it was, and the step is engaged as the one before. The path keeps within `limit`.
     std::int64_t take(sand::Step& step, const SubstepLimit& limit = {});
-    /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
+    /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]. Returns nullopt if no such
+    /// sample waits.
     [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const;
     /// Returns whether samples wait.
     [[nodiscard]] bool waits() const { return !waiting_.empty(); }
     /// Returns whether a waiting sample moves the tool: displaces it, turns it, or changes whether it is engaged.
     [[nodiscard]] bool moves() const;
-    /// Forgets the waiting samples of a hand that does not move. They do not count as dropped, because a step would
-    /// have nothing of them.
+    /// Forgets the waiting samples of a hand that does not move. They do not count as dropped, because no step
+    /// would change with them.
     void forgetRest() { waiting_.clear(); }
     /// Forgets all waiting samples. The hand now hovers at `probe`.
     void restart(sand::ProbePoint probe);

@@ -16,9 +16,9 @@ namespace sand::grid {
 /// One level of a coarse phase: sand slides over a patch of the field, on square groups of cells.
 ///
 /// A coarse cell is as high as the mean of its cells. Its change is shared out over them. So the volume is exact. No
-/// cell leaves the range of the patch's heights, except where sand falls over an open rim. No cell leaves its rock or
-/// rises into the tool. A coarse cell with a wall is a wall. Coarse cells are counted from the nearer rim of the field
-/// on each axis. Cells that are left over lie at the farther rim. Used by one thread.
+/// cell leaves the range of the patch's heights, except where sand falls over an open rim. No cell goes below its rock
+/// or rises into the tool. A coarse cell with a wall is a wall. Coarse cells are counted from the nearer rim of the
+/// field on each axis. Cells that are left over lie at the farther rim. Used by one thread.
 class CoarseLevel {
 public:
     /// The field, and ground and obstacle, which may be null. All must outlive the level.

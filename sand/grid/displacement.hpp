@@ -82,7 +82,7 @@ public:
         return around(from).joinedWith(around(to)).clippedTo(field.bounds());
     }
     /// Returns the distance from the tool's centre up to which a coarse phase slides sand [cell]. With half a radius
-    /// less, 12 % of the sand of a stroke of 61 cells is in another place than with all sweeps, and not 2.6 %.
+    /// less, several times as much sand of a stroke is in another place (`sandwall-bench large-tools`).
     [[nodiscard]] int reachOfCoarsePhase() const { return tool_.radius / kProbePerCell * 7 / 4 + shape_.ringCells(); }
     /// Returns the obstacle of a tool whose centre is at `probe`.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint probe) const;
@@ -97,7 +97,8 @@ private:
     };
     /// Presses the sand of `field`. Changes `into`, which is `field`, or null to find out what would be refused.
     Work press(const HeightField& field, HeightField* into, Rim rim, const Ground* ground, const Press& at) const;
-    /// Presses with the tool at the lowest height above `at`, in whole probe units, at which its sand fits.
+    /// Presses with the tool above `at`, at a height at which its sand fits, in whole probe units. One probe unit below
+    /// it does not fit.
     Work pressAbove(HeightField& field, Rim rim, const Ground* ground, Press at) const;
     /// Does the work of press() part by part of the surroundings, which must be barred.
     Work pressInParts(const HeightField& field, HeightField* into, Rim rim, const Ground& ground, const Press& at,

@@ -107,7 +107,7 @@ struct StepWork {
 };
 
 /// Returns the path that a tool takes in sub-steps of `length` [probe unit]. Leaves out points of `path` that are less
-/// than a sub-step apart along it. The first and the last point stay, and so does a press in place at the beginning.
+/// than a sub-step apart along it. The first point, the last point and a press in place at the beginning stay.
 /// With sub-steps of a cell it keeps all points.
 [[nodiscard]] std::vector<ProbePoint> pathInSubsteps(std::vector<ProbePoint> path, std::int32_t length);
 

@@ -16,6 +16,11 @@ constexpr std::int32_t kLeastCoarseSweeps = 4;  // of the coarsest level
 /// Returns the sweeps of a level with cells of `side` cells that carry sand as far as `all` sweeps of the field.
 std::int32_t sweepsAt(std::int32_t side, std::int32_t all) { return (all + side * side - 1) / (side * side); }
 
+SweepPlan withoutCoarsePhase(const Tuning& tuning) {
+    const std::int32_t sweeps = std::min(tuning.sweepsPerStep, kMostSweeps);
+    return {sweeps, sweeps, 0, 0};
+}
+
 }  // namespace
 
 SweepPlan gridSweepPlan(const Tuning& tuning) {
@@ -23,7 +28,7 @@ SweepPlan gridSweepPlan(const Tuning& tuning) {
     const std::int32_t still = std::clamp(cells, kFineSweeps, std::int32_t{64});
     const std::int32_t halfWidth = isRound(tuning.tool.kind) ? cells : tuning.tool.halfWidth / kProbePerCell;
     if (tuning.tool.radius <= kLargestPlainTool || halfWidth < kNarrowest || all <= still) {
-        return tinSweepPlan(tuning);
+        return withoutCoarsePhase(tuning);
     }
     std::int32_t side = SweepPlan::kFinestSide;
     while (sweepsAt(side, all) > kMostCoarseSweeps && 2 * side * kAcross <= halfWidth) {
@@ -32,9 +37,6 @@ SweepPlan gridSweepPlan(const Tuning& tuning) {
     return {kFineSweeps, still, side, std::clamp(sweepsAt(side, all), kLeastCoarseSweeps, kMostSweeps)};
 }
 
-SweepPlan tinSweepPlan(const Tuning& tuning) {
-    const std::int32_t sweeps = std::min(tuning.sweepsPerStep, kMostSweeps);
-    return {sweeps, sweeps, 0, 0};
-}
+SweepPlan tinSweepPlan(const Tuning& tuning) { return withoutCoarsePhase(tuning); }
 
 }  // namespace sand

@@ -95,6 +95,15 @@ double moreOnTheField(const sand::Start& field, const sand::Start& part) {
     return more(field.rules.columns, part.rules.columns) * more(field.rules.rows, part.rules.rows);
 }
 
+/// Returns how many radii come up to the largest at which a step takes at most `seconds`.
+std::size_t lastWithin(double seconds, std::span<const std::pair<double, double>> measured) {
+    std::size_t end = measured.size();
+    while (end > 0 && measured[end - 1].second > seconds) {
+        --end;
+    }
+    return end;
+}
+
 /// Returns two digits of a small number, and a large one in whole.
 std::string shortText(double number) {
     return number < 10 ? fmt::format("{:.2g}", number) : fmt::format("{:.0f}", number);
@@ -151,8 +160,7 @@ std::optional<LargestTools> largestToolsOf(const Scene& scene) {
             break;
         }
         const double seconds = digger.secondsOfAStep(part.rules.sweepPlan().moved) * moreOnTheField(scene, part);
-        // Noise must not make a larger tool faster.
-        measured.emplace_back(cells, std::max(seconds, measured.empty() ? 0 : measured.back().second));
+        measured.emplace_back(cells, seconds);
         if (seconds > LargestTools::kLongFrame || secondsSince(began) > kSecondsInAll) {
             break;
         }
@@ -160,21 +168,36 @@ std::optional<LargestTools> largestToolsOf(const Scene& scene) {
     if (measured.empty()) {
         return std::nullopt;
     }
-    return LargestTools{.following = radiusAt(0.5 / scene.rules.stepsPerSecond, measured),
-                        .fitting = radiusAt(LargestTools::kLongFrame, measured),
-                        .tried = measured.back().first};
+    return largestOf(measured, scene.rules.stepsPerSecond);
+}
+
+LargestTools largestOf(std::span<const std::pair<double, double>> measured, int stepsPerSecond) {
+    const double half = 0.5 / stepsPerSecond;
+    return {.following = radiusAt(half, measured),
+            .fitting = radiusAt(LargestTools::kLongFrame, measured),
+            .slower = slowerBelow(half, measured),
+            .tried = measured.back().first};
 }
 
 double radiusAt(double seconds, std::span<const std::pair<double, double>> measured) {
-    const auto slower = std::ranges::upper_bound(measured, seconds, {}, &std::pair<double, double>::second);
-    if (slower == measured.begin()) {
+    const auto end = lastWithin(seconds, measured);
+    if (end == 0) {
         return 0;
     }
-    const auto& [radius, time] = *std::prev(slower);
-    if (slower == measured.end() || time <= 0) {
+    const auto& [radius, time] = measured[end - 1];
+    if (end == measured.size() || time <= 0) {
         return radius;
     }
-    return radius * std::pow(slower->first / radius, std::log(seconds / time) / std::log(slower->second / time));
+    const auto& [larger, longer] = measured[end];
+    return radius * std::pow(larger / radius, std::log(seconds / time) / std::log(longer / time));
+}
+
+double slowerBelow(double seconds, std::span<const std::pair<double, double>> measured) {
+    double slower = 0;
+    for (const auto& [radius, time] : measured.first(lastWithin(seconds, measured))) {
+        slower = time > seconds ? radius : slower;
+    }
+    return slower;
 }
 
 std::string LargestTools::text(const Scene& scene) const {
@@ -186,9 +209,10 @@ std::string LargestTools::text(const Scene& scene) const {
         return fmt::format("up to a radius of ≈ {} ({} cells{})", shortText(cells * scene.grid().cellSize),
                            shortText(cells), all ? ", the largest that was measured" : "");
     };
+    const std::string except = slower > 0 ? fmt::format(", but not at {:.0f} cells", slower) : "";
     const bool holds = scene.rules.stepLimits().mostSweeps == 0 && fitting < tried;
-    return fmt::format("this tool follows the hand {}; its step takes at most {:.0f} ms {}{}", upTo(following),
-                       kLongFrame * 1e3, upTo(fitting),
+    return fmt::format("this tool follows the hand {}{}; its step takes at most {:.0f} ms {}{}", upTo(following),
+                       except, kLongFrame * 1e3, upTo(fitting),
                        holds ? ", and a larger one holds frames, because steps of a TIN are not spread" : "");
 }
 

@@ -29,7 +29,10 @@ struct LargestTools {
     /// Largest radius at which a step takes at most half of the time between two steps. The other half is for drawing.
     double following = 0;  // [cell]
     double fitting = 0;    // [cell], largest radius at which a step takes at most kLongFrame
-    double tried = 0;      // [cell], largest radius that was measured; the two numbers are not above it
+    /// Largest measured radius below `following` at which a step takes longer than that [cell]; 0 if there is none. A
+    /// tool of 16 cells has no coarse phase, so that its step can take longer than that of a larger tool.
+    double slower = 0;
+    double tried = 0;  // [cell], largest radius that was measured; the two numbers are not above it
 
     /// Returns one line for the user.
     [[nodiscard]] std::string text(const Scene& scene) const;
@@ -51,8 +54,14 @@ struct LargestTools {
 /// replica of the part or of the TIN.
 [[nodiscard]] std::optional<LargestTools> largestToolsOf(const Scene& scene);
 
-/// Returns the radius at which a step takes `seconds`, between measured radii with rising times. Both grow as powers
-/// of each other between two of them. Returns the largest radius if it takes less, and 0 if the smallest takes more.
+/// Returns the largest tools of at least one measured radius and its time of a step.
+[[nodiscard]] LargestTools largestOf(std::span<const std::pair<double, double>> measured /* [cell], [s] */,
+                                     int stepsPerSecond);
+
+/// Returns the largest radius at which a step takes `seconds`, between measured radii. Both grow as powers of each
+/// other between two of them. Returns the largest radius if it takes less, and 0 if all take more.
 [[nodiscard]] double radiusAt(double seconds, std::span<const std::pair<double, double>> measured /* [cell], [s] */);
+/// Returns the largest measured radius below radiusAt() at which a step takes more than `seconds`; 0 if there is none.
+[[nodiscard]] double slowerBelow(double seconds, std::span<const std::pair<double, double>> measured);
 
 }  // namespace scene

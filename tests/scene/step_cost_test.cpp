@@ -51,6 +51,24 @@ TEST(LargestTools, AreInterpolatedBetweenMeasuredRadii) {
     EXPECT_EQ(scene::radiusAt(1, measured), 32) << "the largest one, which is fast enough";
     const std::vector<std::pair<double, double>> alike{{4, 0.001}, {8, 0.001}, {16, 0.01}};
     EXPECT_NEAR(scene::radiusAt(0.001, alike), 8, 1e-12);
+    EXPECT_EQ(scene::slowerBelow(0.002, measured), 0);
+}
+
+TEST(LargestTools, AreFoundAboveASlowerOne) {
+    const std::vector<std::pair<double, double>> measured{{8, 0.004}, {16, 0.016}, {32, 0.002}, {64, 0.032}};
+    EXPECT_NEAR(scene::radiusAt(0.008, measured), 32 * std::sqrt(2), 1e-9);
+    EXPECT_EQ(scene::slowerBelow(0.008, measured), 16);
+    EXPECT_EQ(scene::slowerBelow(0.016, measured), 0);
+    EXPECT_EQ(scene::radiusAt(0.001, measured), 0);
+    EXPECT_EQ(scene::slowerBelow(0.001, measured), 0);
+    // Of 62.5 ms, half is for the step.
+    const std::vector<std::pair<double, double>> rising{{16, 0.016}, {32, 0.03125}, {64, 0.0625}, {128, 0.5}};
+    const scene::LargestTools tools = scene::largestOf(rising, 16);
+    EXPECT_NEAR(tools.following, 32, 1e-9);
+    EXPECT_NEAR(tools.fitting, 64 * std::pow(4, 1.0 / 3), 1e-9);
+    EXPECT_EQ(tools.slower, 0);
+    EXPECT_EQ(tools.tried, 128);
+    EXPECT_EQ(scene::largestOf(measured, 62).slower, 16);
 }
 
 // A tool that follows the hand is never larger than one whose step only fits a long frame.
@@ -91,6 +109,10 @@ TEST(LargestTools, AreSaidInUnitsOfTheSceneAndInCells) {
     EXPECT_TRUE((scene::LargestTools{.following = 0, .fitting = 8, .tried = 16})
                     .text(scene)
                     .starts_with("this tool follows the hand at no radius of 4 cells or more; "));
+    EXPECT_NE((scene::LargestTools{.following = 64, .fitting = 64, .slower = 16, .tried = 64})
+                  .text(scene)
+                  .find("), but not at 16 cells; its step"),
+              std::string::npos);
     scene.rules.tin = 1;
     const std::string held = ", and a larger one holds frames, because steps of a TIN are not spread";
     EXPECT_TRUE((scene::LargestTools{.following = 4, .fitting = 8, .tried = 16}).text(scene).ends_with(held));

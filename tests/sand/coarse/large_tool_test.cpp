@@ -15,9 +15,12 @@
 #include "sand/replica.hpp"
 #include "tests/support/sand/sand_of.hpp"
 #include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/strokes.hpp"
 
 namespace {
 
+using samples::apart;
+using samples::highest;
 using sand::kProbePerCell;
 using sand::ProbePoint;
 
@@ -31,6 +34,7 @@ struct Case {
     double rockDepth = 0;  // [cell]; 0: no rock
     int wall = -1;         // column; -1: no wall
     double band = 0.001;
+    double mostApart = 0.035;  // at rest, beside all sweeps
 };
 
 scene::Scene sceneOf(const Case& given) {
@@ -101,25 +105,6 @@ private:
     ProbePoint at_;
 };
 
-double apart(const sand::HeightField& field, const sand::HeightField& full) {  // [share of the sand that has moved]
-    double apart = 0, moved = 0;
-    for (int y = 0; y < field.rows(); ++y) {
-        for (int x = 0; x < field.columns(); ++x) {
-            apart += std::abs(double(field.height(x, y)) - full.height(x, y));
-            moved += std::abs(double(full.height(x, y)));
-        }
-    }
-    return apart / moved;
-}
-
-double highest(const sand::HeightField& field) {
-    std::int32_t highest = 0;
-    for (int y = 0; y < field.rows(); ++y) {
-        highest = std::max(highest, *std::max_element(field.row(y), field.row(y) + field.columns()));
-    }
-    return highest;
-}
-
 void digWith(sand::Replica& sand, const Case& given) {
     for (int step = 0; step < kDigging; ++step) {
         sand.apply({.number = sand.stepNumber() + 1, .engaged = true, .path = pathOf(given, step)});
@@ -136,14 +121,13 @@ int stepsToRest(sand::Replica& sand, int most) {
     return steps;
 }
 
-const std::array kCases{Case{"level sand"},
-                        Case{"another side", 253},
-                        Case{"a closed rim", 256, 30, sand::Rim::closed, 0.15},
-                        Case{"an open rim", 256, 30, sand::Rim::open, 0.15},
-                        Case{"rough rock", 256, 30, sand::Rim::closed, 0.5, 20},
-                        Case{"thin layers", 256, 30, sand::Rim::closed, 0.5, 3},
-                        Case{"a wall", 256, 30, sand::Rim::closed, 0.5, 0, 150},
-                        Case{"a wide band", 256, 30, sand::Rim::closed, 0.5, 0, -1, 0.2}};
+const std::array kCases{
+    Case{"level sand"}, Case{"another side", 253}, Case{"a closed rim", 256, 30, sand::Rim::closed, 0.15},
+    Case{"an open rim", 256, 30, sand::Rim::open, 0.15}, Case{"rough rock", 256, 30, sand::Rim::closed, 0.5, 20},
+    // A layer thinner than a coarse cell is less exact.
+    Case{"thin layers", 256, 30, sand::Rim::closed, 0.5, 3, -1, 0.001, 0.055},
+    Case{"a wall", 256, 30, sand::Rim::closed, 0.5, 0, 150},
+    Case{"a wide band", 256, 30, sand::Rim::closed, 0.5, 0, -1, 0.2}};
 
 TEST(LargeTool, DigsAsAllSweepsWould) {
     for (const Case& given : kCases) {
@@ -152,19 +136,18 @@ TEST(LargeTool, DigsAsAllSweepsWould) {
         FullPath full(given);
         digWith(sand, given);
         full.dig();
-        EXPECT_LE(apart(samples::fieldOf(sand), full.field()), 0.08);
-        EXPECT_LE(highest(samples::fieldOf(sand)), 1.7 * highest(full.field()));
+        EXPECT_LE(apart(samples::fieldOf(sand), full.field()), 0.05);
+        EXPECT_LE(highest(samples::fieldOf(sand)), 1.35 * highest(full.field()));
         sand.apply({.number = sand.stepNumber() + 1, .engaged = false});
         EXPECT_LT(stepsToRest(sand, 600), 600);
         full.rest();
-        EXPECT_LE(apart(samples::fieldOf(sand), full.field()), 0.06);
+        EXPECT_LE(apart(samples::fieldOf(sand), full.field()), given.mostApart);
         EXPECT_EQ(sand.volume() + sand.outflow(), sceneOf(given).terrain.volume());
         EXPECT_EQ(sand.outflow() > 0, given.rim == sand::Rim::open);
     }
 }
 
 TEST(LargeTool, RestsWhileItIsHeld) {
-    // With all sweeps in each step before, it takes 115 and 768 steps.
     for (const auto& [radius, most] : {std::pair(30, 300), {61, 900}}) {
         const Case given{"held", 8 * radius, radius};
         sand::Replica sand(sceneOf(given));
