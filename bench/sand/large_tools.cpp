@@ -157,14 +157,14 @@ std::vector<DigLaw> lawsOf(const DigCase& given) {
     std::vector<DigLaw> laws{{"all sweeps", {}, given.allSweeps(), plan.still}};
     if (plan.hasCoarsePhase()) {
         DigLaw built{"", {}, plan.moved, plan.still};
-        for (int side = plan.coarsest; side >= sand::SweepPlan::kFinestSide; side /= 2) {
+        for (int side = plan.coarsest; side >= plan.finest; side /= 2) {
             built.levels.emplace_back(side, plan.sweepsOf(side));
         }
         laws.push_back(built);
         DigLaw nearer = built;
         nearer.nearer = given.radius() / 2;
         laws.push_back(nearer);
-        built.levels.emplace_back(2, 8);
+        built.levels.emplace_back(plan.finest / 2, sand::SweepPlan::kFinerSweeps);
         laws.push_back(built);
         laws.push_back({"capped", {}, plan.still, plan.still});
     }

@@ -61,13 +61,27 @@ std::int32_t CoarseLevel::lowest(int x, int y, std::int32_t least) const {
     return site_.ground == nullptr ? least : std::max(least, site_.ground->bedrock(x, y));
 }
 
-std::int32_t CoarseLevel::highest(int x, int y) const {
+std::int32_t CoarseLevel::highest(int x, int y, std::int32_t cap) const {
     const Obstacle* const tool = site_.obstacle;
     if (tool == nullptr || x < tool->cells.x0 || x >= tool->cells.x1 || y < tool->cells.y0 || y >= tool->cells.y1) {
-        return highest_;
+        return cap;
     }
     const std::int32_t under = tool->row(y)[x - tool->cells.x0];
-    return under == Obstacle::kFree ? highest_ : std::max(std::min(under, highest_), site_.field.height(x, y));
+    return under == Obstacle::kFree ? cap : std::max(std::min(under, cap), site_.field.height(x, y));
+}
+
+std::int32_t CoarseLevel::capOf(int column, int row) const {
+    if (obstacle_.cells.clippedTo({column, row, column + 1, row + 1}).empty() ||
+        obstacle_.row(row)[column - obstacle_.cells.x0] == Obstacle::kFree) {
+        return highest_;
+    }
+    std::int32_t cap = -kMaxHeight;
+    forEach(CellRect{column - 1, row - 1, column + 2, row + 2}.clippedTo({0, 0, columns(), rows()}), [&](int x, int y) {
+        cap = std::max(
+            cap,
+            tops_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns()) + static_cast<std::size_t>(x)]);
+    });
+    return cap;
 }
 
 void CoarseLevel::findRange() {
@@ -84,12 +98,12 @@ void CoarseLevel::findRange() {
 }
 
 void CoarseLevel::fill() {
+    const CellRect inner{across_.before, down_.before, across_.before + across_.count, down_.before + down_.count};
     if (site_.obstacle != nullptr) {
         const CellRect& below = site_.obstacle->cells;
         const auto coarse = [this](int cell, const Axis& axis) {
             return static_cast<int>(floorOf(cell - axis.first, side_)) + axis.before;
         };
-        const CellRect inner{across_.before, down_.before, across_.before + across_.count, down_.before + down_.count};
         obstacle_.cells = below.empty() ? CellRect{}
                                         : CellRect{coarse(below.x0, across_), coarse(below.y0, down_),
                                                    coarse(below.x1 - 1, across_) + 1, coarse(below.y1 - 1, down_) + 1}
@@ -99,6 +113,14 @@ void CoarseLevel::fill() {
         const int padded = obstacle_.cells.y1 - obstacle_.cells.y0 + 2 * Obstacle::kRowsBeside;
         obstacle_.underside.assign(static_cast<std::size_t>(obstacle_.stride()) * static_cast<std::size_t>(padded),
                                    Obstacle::kFree);
+    }
+    if (!obstacle_.cells.empty()) {
+        tops_.assign(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()), -kMaxHeight);
+        forEach(inner, [this](int column, int row) {
+            std::int32_t& top = tops_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns()) +
+                                      static_cast<std::size_t>(column)];
+            forEach(cellsOf(column, row), [&](int x, int y) { top = std::max(top, site_.field.height(x, y)); });
+        });
     }
     forEach({0, 0, columns(), rows()}, [this](int column, int row) {
         const bool edge = column < across_.before || column >= across_.before + across_.count || row < down_.before ||
@@ -141,19 +163,20 @@ void CoarseLevel::fillGround(int column, int row) {
 
 /// Sets the underside so that the room below it is that of the cells. `sand` is the sum of their heights.
 void CoarseLevel::fillObstacle(int column, int row, std::int64_t sand) {
-    std::int64_t room = 0;
     bool below = false;
     forEach(cellsOf(column, row), [&](int x, int y) {
         const CellRect& cells = site_.obstacle->cells;
         below |= x >= cells.x0 && x < cells.x1 && y >= cells.y0 && y < cells.y1 &&
                  site_.obstacle->row(y)[x - cells.x0] != Obstacle::kFree;
-        room += highest(x, y);
     });
     if (below) {
-        const std::int64_t more = floorOf(room - sand, std::int64_t{side_} * side_);
         const auto first = static_cast<std::size_t>(obstacle_.row(row) - obstacle_.underside.data());
-        obstacle_.underside[first + static_cast<std::size_t>(column - obstacle_.cells.x0)] =
-            static_cast<std::int32_t>(heights_->height(column, row) + more);
+        std::int32_t& under = obstacle_.underside[first + static_cast<std::size_t>(column - obstacle_.cells.x0)];
+        under = heights_->height(column, row);  // no longer free, as capOf() asks
+        const std::int32_t cap = capOf(column, row);
+        std::int64_t room = 0;
+        forEach(cellsOf(column, row), [&](int x, int y) { room += highest(x, y, cap); });
+        under += static_cast<std::int32_t>(floorOf(room - sand, std::int64_t{side_} * side_));
     }
 }
 
@@ -192,7 +215,8 @@ CoarseLevel::Result CoarseLevel::sweep(int sweeps) {
 void CoarseLevel::shareOut(int column, int row, std::int64_t change) {
     const CellRect cells = cellsOf(column, row);
     std::int32_t least = lowest_;
-    const auto limit = [&](int x, int y) { return change > 0 ? highest(x, y) : lowest(x, y, least); };
+    const std::int32_t cap = capOf(column, row);
+    const auto limit = [&](int x, int y) { return change > 0 ? highest(x, y, cap) : lowest(x, y, least); };
     std::int64_t left = change;
     while (left != 0) {
         std::int64_t count = 0;

@@ -52,8 +52,10 @@ private:
 
     /// Returns the lowest height to which a cell may go, at least `least`.
     [[nodiscard]] std::int32_t lowest(int x, int y, std::int32_t least) const;
-    /// Returns the highest height to which a cell may go.
-    [[nodiscard]] std::int32_t highest(int x, int y) const;
+    /// Returns the highest height to which a cell may go, of a coarse cell with this `cap`.
+    [[nodiscard]] std::int32_t highest(int x, int y, std::int32_t cap) const;
+    /// Returns the highest height to which a cell of a coarse cell may go that is not below the tool.
+    [[nodiscard]] std::int32_t capOf(int column, int row) const;
     void findRange();
     void fill();
     void fillGround(int column, int row);
@@ -68,6 +70,7 @@ private:
     std::optional<HeightField> heights_;     // nullopt if the patch has less than a coarse cell
     std::optional<Ground> ground_;
     Obstacle obstacle_{};
+    std::vector<std::int32_t> tops_;  // highest cell of each coarse cell [unit]; empty without a tool
 };
 
 }  // namespace sand::grid

@@ -106,7 +106,7 @@ void GridSurface::slideCoarsely(const CellRect& way, const Tool* tool, const Pro
     beforeStroke_.willChange(field_, patch.grownBy(plan.coarsest).clippedTo(field_.bounds()));
     const Obstacle here = tool == nullptr ? Obstacle{} : displacement.obstacle(field_, probe);
     const CoarseLevel::Site site{field_, rules_, ground_.get(), here.cells.empty() ? nullptr : &here, how_};
-    for (int side = plan.coarsest; side >= SweepPlan::kFinestSide; side /= 2) {
+    for (int side = plan.coarsest; side >= plan.finest; side /= 2) {
         const CoarseLevel::Result slid = CoarseLevel(site, patch, side).sweep(plan.sweepsOf(side));
         outflow_ += slid.outflow;
         if (!slid.changed.empty()) {

@@ -13,14 +13,13 @@ namespace sand {
 /// coarse phase. It comes before the sweeps of a step that moves the tool. Its sweeps on larger cells carry the sand
 /// over long distances. docs/sand.md#large-tools has the law.
 struct SweepPlan {
-    static constexpr std::int32_t kFinestSide = 4;    // [cell], side of the cells of the finest coarse level
     static constexpr std::int32_t kFinerSweeps = 16;  // of each level but the coarsest
 
     std::int32_t moved = 0;  // sweeps that a step owes which moves the tool
     std::int32_t still = 0;  // sweeps that any other step owes
-    /// Side of the cells of the coarsest level [cell], a power of two times kFinestSide; 0 without a coarse phase. Each
-    /// further level has half the side of the one before.
-    std::int32_t coarsest = 0;
+    /// Side of the cells of the coarsest and of the finest coarse level [cell], powers of two; 0 without a coarse
+    /// phase. Each level has half the side of the one before.
+    std::int32_t coarsest = 0, finest = 0;
     std::int32_t coarsestSweeps = 0;
 
     [[nodiscard]] bool hasCoarsePhase() const { return coarsest > 0; }

@@ -173,6 +173,46 @@ TEST(CoarseLevel, ReachesEachRimOnASideThatItDoesNotDivide) {
     }
 }
 
+/// Returns a tool that lies on sand of height 0, with a gap of one cell in the column `gap`.
+Obstacle toolWithGap(const CellRect& cells, int gap) {
+    Obstacle tool;
+    tool.cells = cells;
+    const int padded = cells.y1 - cells.y0 + 2 * Obstacle::kRowsBeside;
+    tool.underside.assign(static_cast<std::size_t>(tool.stride()) * static_cast<std::size_t>(padded), Obstacle::kFree);
+    for (int y = cells.y0; y < cells.y1; ++y) {
+        const auto row = static_cast<std::size_t>(tool.row(y) - tool.underside.data());
+        for (int x = cells.x0; x < cells.x1; ++x) {
+            tool.underside[row + static_cast<std::size_t>(x - cells.x0)] = x == gap ? Obstacle::kFree : 0;
+        }
+    }
+    tool.findReached();
+    return tool;
+}
+
+// A coarse cell is as high as its mean. So a gap between the toes of a footprint would rise like a tower before the
+// mean is as high as the sand beside the foot.
+TEST(CoarseLevel, SandInAGapOfTheToolRisesNoHigherThanTheSandAround) {
+    constexpr int kGap = 9;
+    for (const int side : {2, 4, 8}) {
+        sand::HeightField field(64, 64, 1.0);
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 8; ++x) {
+                field.setHeight(x, y, 20 * sand::kUnitsPerCell);
+            }
+            field.setHeight(60, y, 500 * sand::kUnitsPerCell);  // far away, so that the patch is much higher
+        }
+        const Obstacle tool = toolWithGap({8, 0, 40, 64}, kGap);
+        const sand::Rules rules = samples::rulesFor(field);
+        (void)CoarseLevel({field, rules, nullptr, &tool, {}}, field.bounds(), side).sweep(40);
+        std::int32_t highest = 0;
+        for (int y = 0; y < 64; ++y) {
+            highest = std::max(highest, field.height(kGap, y));
+        }
+        EXPECT_LE(highest, 20 * sand::kUnitsPerCell) << "coarse cells of " << side;
+        EXPECT_GT(highest, 0) << "coarse cells of " << side;
+    }
+}
+
 TEST(CoarseLevel, ClosesThePatchInsideAFieldWithOpenRims) {
     sand::HeightField field = heapAt(100, 100, 50, 50, false);
     sand::Rules rules = samples::rulesFor(field);
