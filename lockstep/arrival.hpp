@@ -23,8 +23,9 @@ struct Arrival {
     std::uint64_t movement = 0;   // sand::Replica::movementDigest() after the steps of this frame
     std::uint64_t viewHash = 0;   // ViewProof::hash() of this frame's view
     base::Keystroke key{};        // key pressed in a window of this rank; without code if none was
-    // [ns], durations of the movements and edits of this frame's steps, of their sweeps, and of audit and hash
-    std::int64_t dragged = 0, swept = 0, hashed = 0;
+    // [ns], durations of the movements and edits of this frame's steps, of their coarse phases, of their sweeps, and of
+    // audit and hash
+    std::int64_t dragged = 0, slid = 0, swept = 0, hashed = 0;
     // [pixel], present size of the window that the picture follows (walls::followsWindow); 0 without one
     std::array<std::int32_t, 2> window{};
     // base::MonitorState of each output of the rank's tile. A tile has at most two outputs. The other numbers are 0, so

@@ -11,11 +11,13 @@ namespace lockstep {
 /// Wall time that a rank spends on the sand of a frame [ns].
 struct SandTime {
     std::int64_t dragNs = 0;   // movements and edits
+    std::int64_t phaseNs = 0;  // coarse phases
     std::int64_t sweepNs = 0;  // sweeps
     std::int64_t hashNs = 0;   // audit and hash
 
     SandTime& operator+=(const SandTime& other) {
         dragNs += other.dragNs;
+        phaseNs += other.phaseNs;
         sweepNs += other.sweepNs;
         hashNs += other.hashNs;
         return *this;
@@ -25,10 +27,17 @@ struct SandTime {
 /// Applies `step`, and returns the time that it took.
 inline SandTime applyTimed(sand::Replica& replica, const sand::Step& step) {
     const std::int64_t begin = host::monotonicNs();
-    std::int64_t moved = 0;  // 0: the step had no sweeps
-    replica.apply(step, [&moved] { moved = host::monotonicNs(); });
-    const std::int64_t end = host::monotonicNs();
-    return {(moved == 0 ? end : moved) - begin, moved == 0 ? 0 : end - moved, 0};
+    SandTime time;
+    std::int64_t last = begin;
+    bool sweeps = false;
+    replica.apply(step, [&](sand::StepPart ended) {
+        const std::int64_t now = host::monotonicNs();
+        (ended == sand::StepPart::movement ? time.dragNs : time.phaseNs) = now - last;
+        last = now;
+        sweeps = true;
+    });
+    (sweeps ? time.sweepNs : time.dragNs) = host::monotonicNs() - last;
+    return time;
 }
 
 }  // namespace lockstep

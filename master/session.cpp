@@ -233,6 +233,7 @@ haptic_bridge::FrameCost Session::cost() const {
     haptic_bridge::FrameCost cost = costOf(barrier_.arrivals(), hosts_);
     cost.sweeps = sand_.work().sweeps;
     cost.substeps = sand_.work().substeps;
+    cost.phases = sand_.work().phases;
     return cost;
 }
 
@@ -244,6 +245,7 @@ bool Session::agree(const lockstep::FrameMessage& frame) {
                            .movement = sand_.replica().movementDigest(),
                            .viewHash = check_.viewHash(frame.view)};
     mine.dragged = sand_.time().dragNs;
+    mine.slid = sand_.time().phaseNs;
     mine.swept = sand_.time().sweepNs;
     mine.hashed = sand_.time().hashNs;
     return check_.agree(frame, mine, sand_, *steps_, clock_.next(held()));

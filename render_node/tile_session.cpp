@@ -115,6 +115,7 @@ public:
                                    viewProof_.hash(frame.view),
                                    nextKey(),
                                    cost_.dragNs,
+                                   cost_.phaseNs,
                                    cost_.sweepNs,
                                    cost_.hashNs,
                                    {window.x, window.y}};

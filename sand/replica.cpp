@@ -83,7 +83,7 @@ Replica::Replica(const Replica& other)
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
 
-void Replica::apply(const Step& step, const std::function<void()>& moved) {
+void Replica::apply(const Step& step, const std::function<void(StepPart)>& ended) {
     (void)base::needDefaultFloats();  // a driver may change the rounding of its caller at any time
     if (step.number != stepNumber_ + 1) {
         throw std::logic_error("Replica::apply: step " + std::to_string(step.number) + " after step " +
@@ -101,7 +101,7 @@ void Replica::apply(const Step& step, const std::function<void()>& moved) {
     const ToolState before{rules_.tuning, probe_, heading_};
     const std::int64_t refusedBefore = surface_->refusedPresses().count;
     try {
-        applyToSand(step, moved);
+        applyToSand(step, ended);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
@@ -136,6 +136,11 @@ bool Replica::movesTool(const Step& step) const {
 bool Replica::displacesSand(const Step& step) const {
     const bool otherTool = step.edit.kind == Edit::tune && step.edit.tuning.tool != rules_.tuning.tool;
     return movesTool(step) || (step.engaged && otherTool);
+}
+
+bool Replica::hasCoarsePhase(const Step& step) const {
+    const Tuning& tuning = step.edit.kind == Edit::tune ? step.edit.tuning : rules_.tuning;
+    return displacesSand(step) && rules_.sweepPlan(tuning).hasCoarsePhase();
 }
 
 Owed Replica::owedBy(const Step& step) const {
@@ -190,10 +195,10 @@ bool Replica::restoreKept() {
     return false;
 }
 
-void Replica::applyToSand(const Step& step, const std::function<void()>& moved) {
-    lastWork_ = {0, substepsOf(step, probe_, engaged_, rules_.substepLength())};
+void Replica::applyToSand(const Step& step, const std::function<void(StepPart)>& ended) {
+    lastWork_ = {0, substepsOf(step, probe_, engaged_, rules_.substepLength()), 0};
     const Owed owed = owedBy(step);
-    const bool displaces = displacesSand(step);
+    const bool slidesCoarsely = hasCoarsePhase(step);
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
     const Tool toolBefore = tool();
@@ -246,12 +251,14 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
         surface_->hold(here, probe_);
     }
     const std::int32_t sweeps = step.sweeps != 0 ? step.sweeps : wholeOf(owed_);
-    moved();
+    ended(StepPart::movement);
     const Tool* const obstacle = engaged_ ? &here : nullptr;
-    if (displaces && rules_.sweepPlan().hasCoarsePhase()) {
+    if (slidesCoarsely) {
         // A larger tool from before a tune has left sand farther away.
         const std::int32_t smaller = std::max(toolBefore.radius - here.radius, 0) / kProbePerCell;
         surface_->slideCoarsely(wayOf(step, before, wasEngaged).grownBy(2 * smaller), obstacle, probe_);
+        lastWork_.phases = 1;
+        ended(StepPart::coarsePhase);
     }
     const Swept swept = surface_->sweep({sweeps, owed_.done, owed_.whole}, obstacle, probe_);
     lastWork_.sweeps = swept.sweeps;

@@ -87,11 +87,11 @@ public:
     /// out, as a whole or in part; all replicas leave out the same. After std::bad_alloc, which depends on the host,
     /// the replica is unusable, and its process must end.
     void apply(const Step& step) {
-        apply(step, [] {});
+        apply(step, [](StepPart) {});
     }
-    /// Applies the next step. Calls `moved` after the tool's movement and the edit, and before the sweeps, so that the
-    /// caller can measure both. It is not called for a step that is left out or that restores sand.
-    void apply(const Step& step, const std::function<void()>& moved);
+    /// Applies the next step. Calls `ended` at the end of each part of it, so that the caller can measure the parts and
+    /// the sweeps. It is not called for a step that is left out or that restores sand.
+    void apply(const Step& step, const std::function<void(StepPart)>& ended);
     /// Returns the work of the last step that was applied. The number of sweeps may differ between equal replicas.
     [[nodiscard]] const StepWork& lastWork() const { return lastWork_; }
     /// Returns one line about what the last apply() has left out: an ignored load, an ignored path, or the whole step.
@@ -116,6 +116,9 @@ public:
     [[nodiscard]] std::int32_t mostSweeps(const Step& step) const;
     /// Returns the sweeps with which `step` pays all that is owed, but of a settle only settlingSweeps(); 0 for a TIN.
     [[nodiscard]] std::int32_t wholeSweeps(const Step& step) const;
+    /// Returns whether the next step has a coarse phase if it is `step`. Assumes that an undo, reset or load has no
+    /// effect.
+    [[nodiscard]] bool hasCoarsePhase(const Step& step) const;
 
     [[nodiscard]] const Rules& rules() const { return rules_; }  // the scene's, with the operator's tuning
     [[nodiscard]] const Surface& surface() const { return *surface_; }
@@ -214,7 +217,7 @@ private:
     void tune(const Tuning& tuning);
     /// Displaces the sand below the tool at its current position.
     void press();
-    void applyToSand(const Step& step, const std::function<void()>& moved);
+    void applyToSand(const Step& step, const std::function<void(StepPart)>& ended);
     /// Ends a step whose application has failed. `before` is from before the step.
     void skip(const Step& step, const ToolState& before, const char* why);
     /// Restores the sand that is kept for an undo. Returns false if no sand is kept, or if it is not possible sand.

@@ -32,7 +32,7 @@ public:
     /// last of its samples was read [ns, the samples' clock]. Returns 0 if the step has no sample that was read.
     /// The path keeps within `limit`.
     ///
-    /// While the replica holds its tool (sand::Replica::holdsTool()), do not call it: the movement waits.
+    /// While SweepBudget::holdsHand(), do not call it: the movement waits.
     std::int64_t fill(sand::Step& step, const SubstepLimit& limit = {});
     /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
     [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const { return path_.engagedSinceNs(); }

@@ -79,14 +79,16 @@ sand::ProbePoint PathBuilder::approach(const sand::ProbePoint& goal, const Subst
 
 std::int64_t PathBuilder::take(sand::Step& step, const SubstepLimit& limit) {
     step.engaged = engaged_;
-    if (waiting_.empty()) {
+    if (waiting_.empty() || (limit.onlyHovering && waiting_.front().engaged)) {
         return 0;
     }
-    letGoIfFarAhead();
+    if (waiting_.front().engaged) {
+        letGoIfFarAhead();
+    }
     std::vector<sand::ProbePoint>& path = step.path;
     path.clear();
     std::int64_t readNs = 0;
-    const std::int64_t until = waiting_.front().readNs + mostNs_;
+    const std::int64_t until = waiting_.front().engaged ? waiting_.front().readNs + mostNs_ : INT64_MAX;
     const bool changed = waiting_.front().engaged != engaged_;
     engaged_ = waiting_.front().engaged;
     step.engaged = engaged_;
@@ -117,7 +119,7 @@ std::int64_t PathBuilder::take(sand::Step& step, const SubstepLimit& limit) {
     step.engaged = engaged_;
     const std::size_t all = path.size();
     thin(path, sand::kMaxPathPoints);
-    dropped_ += all - path.size();
+    dropped_ += engaged_ ? all - path.size() : 0;
     return readNs;
 }
 

@@ -25,6 +25,7 @@ struct SubstepLimit {
     std::int64_t wanted = kNone;                // a path that ends at its first point may have more
     std::int64_t most = kNone;                  // the way to the first point is divided if it has more
     std::int32_t length = sand::kProbePerCell;  // Rules::substepLength() [probe unit]
+    bool onlyHovering = false;                  // engaged samples wait
 };
 
 /// Gathers hand samples and cuts them into the paths of steps. Not thread-safe.
@@ -33,14 +34,15 @@ struct SubstepLimit {
 /// next step takes the rest. Points at which the hand rests are left out. A path that is too long for a step keeps its
 /// first and its last point, and evenly chosen points in between. The points stay in the order of time.
 ///
-/// Samples wait while a slow wall holds the server back, and while sweeps are owed. A later step then holds up to
-/// kMostPeriods periods of the hand, and no more sub-steps of the tool than its caller allows. It holds no more,
-/// because a longer path takes longer to apply, and the wall would fall further behind. If the waiting samples span
-/// more than kFarthestAhead, only the last kMostPeriods periods of them are kept. The tool is then lifted, and put down
-/// where these samples begin.
+/// Samples wait while a slow wall holds the server back, and engaged ones while sweeps are owed. A later step then
+/// holds up to kMostPeriods periods of an engaged hand, and no more sub-steps of the tool than its caller allows. It
+/// holds no more, because a longer path takes longer to apply, and the wall would fall further behind. A step takes all
+/// waiting samples of a hand that hovers, because they move no sand. If the waiting samples span more than
+/// kFarthestAhead and begin engaged, only the last kMostPeriods periods of them are kept. The tool is then lifted, and
+/// put down where these samples begin.
 class PathBuilder {
 public:
-    static constexpr std::int64_t kMostPeriods = 4;  // [period of a step] of hand movement that a step may hold
+    static constexpr std::int64_t kMostPeriods = 4;  // [period of a step] of engaged movement that a step may hold
     static constexpr std::int64_t kFarthestAhead = 1'000'000'000;  // [ns], longest time that the waiting samples span
 
     /// Number of waiting samples above which every second one is dropped, so that a blocked link costs bounded memory.
@@ -67,8 +69,8 @@ public:
     void restart(sand::ProbePoint probe);
     /// Drops all waiting samples and counts them.
     void dropWaiting();
-    /// Returns the number of samples that were dropped: thinned out, too far ahead, or waiting when dropWaiting() was
-    /// called.
+    /// Returns the number of samples that were dropped: engaged ones that were thinned out of a step, waiting ones that
+    /// were thinned out, too far ahead, or waiting when dropWaiting() was called.
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
 private:
@@ -78,7 +80,7 @@ private:
     /// Brings the tool nearer to `goal` by the most sub-steps of `limit`. Returns the point that it reaches.
     sand::ProbePoint approach(const sand::ProbePoint& goal, const SubstepLimit& limit);
 
-    std::int64_t mostNs_;  // [ns] of hand movement that a step may hold
+    std::int64_t mostNs_;  // [ns] of engaged movement that a step may hold
     std::deque<HandSample> waiting_;
     sand::ProbePoint last_;
     bool engaged_ = false;

@@ -19,6 +19,9 @@ double areaOf(std::int64_t substeps, const sand::Tool& tool) {
 
 void SweepBudget::shown(const FrameCost& cost, std::uint64_t step) {
     drawNs_ = cost.drawNs;
+    if (cost.phases > 0) {
+        phaseNs_ = static_cast<double>(cost.phaseNs) / static_cast<double>(cost.phases);
+    }
     if (cost.sweeps > 0 || cost.substeps > 0) {
         hashNs_ = cost.hashNs;
     }
@@ -67,8 +70,9 @@ std::int32_t SweepBudget::sweepsOf(const sand::Step& step, const sand::Replica& 
         const double budget = static_cast<double>(budgetNs());
         const std::int64_t substeps =
             sand::substepsOf(step, replica.probe(), replica.engaged(), replica.rules().substepLength());
-        const double others = static_cast<double>(hashNs_) + substepNs_ * static_cast<double>(substeps);
-        // A drag or a hash that takes the whole budget still leaves a quarter of it for sweeps, or they would stop.
+        const double phase = replica.hasCoarsePhase(step) ? phaseNs_ : 0;
+        const double others = static_cast<double>(hashNs_) + substepNs_ * static_cast<double>(substeps) + phase;
+        // If the rest takes the whole budget, a quarter of it is still left for sweeps, or they would stop.
         sweeps = std::min(sweeps, sweepsIn(std::max(budget - others, budget / 4), substeps, replica.tool()));
     }
     return std::max(static_cast<std::int32_t>(sweeps), 1);
@@ -83,10 +87,17 @@ double SweepBudget::sweepsIn(double ns, std::int64_t substeps, const sand::Tool&
     return std::min(fit, std::max(fit / growth_, double{kFastPart}));
 }
 
+bool SweepBudget::holdsHand(const sand::Replica& replica) const {
+    return replica.holdsTool() && (pace_ == Pace::fast || replica.engaged());
+}
+
 SubstepLimit SweepBudget::substeps(const sand::Replica& replica) const {
-    SubstepLimit limit{.most = replica.rules().mostSubsteps(), .length = replica.rules().substepLength()};
+    SubstepLimit limit{.most = replica.rules().mostSubsteps(),
+                       .length = replica.rules().substepLength(),
+                       .onlyHovering = replica.holdsTool()};
     if (pace_ == Pace::realtime && substepNs_ > 0) {
-        const double fit = static_cast<double>(budgetNs()) / substepNs_;
+        const auto budget = static_cast<double>(budgetNs());
+        const double fit = std::max(budget - phaseNs_, budget / 4) / substepNs_;
         limit.wanted = static_cast<std::int64_t>(std::clamp(fit, 1.0, static_cast<double>(limit.most)));
     }
     return limit;
@@ -97,7 +108,8 @@ bool SweepBudget::fits(const sand::StepWork& taken, const sand::StepWork& furthe
     all += further;
     const double growth = further.sweeps >= kFastPart ? growth_ : 1;
     const double sweepsNs = sweepNs_ * static_cast<double>(all.sweeps) * widened(all.substeps, tool) * growth;
-    const double othersNs = substepNs_ * static_cast<double>(all.substeps) + static_cast<double>(hashNs_);
+    const double othersNs = substepNs_ * static_cast<double>(all.substeps) +
+                            phaseNs_ * static_cast<double>(all.phases) + static_cast<double>(hashNs_);
     return pace_ == Pace::fast || sweepsNs + othersNs <= static_cast<double>(budgetNs());
 }
 

@@ -31,8 +31,11 @@ public:
 
     /// Returns the sweeps of `step`, which is the next of `replica` and has everything except its sweeps; 0 for a TIN.
     [[nodiscard]] std::int32_t sweepsOf(const sand::Step& step, const sand::Replica& replica);
+    /// Returns whether the next step of `replica` leaves the hand where it is, because sweeps are owed. In real time a
+    /// hand that hovers goes on meanwhile: it moves no sand.
+    [[nodiscard]] bool holdsHand(const sand::Replica& replica) const;
     /// Returns how many sub-steps of the tool the next step of `replica` may have, at least 1. Under the fast pace only
-    /// the rules limit them.
+    /// the rules limit them. While sweeps are owed, the step takes only samples that hover.
     [[nodiscard]] SubstepLimit substeps(const sand::Replica& replica) const;
     /// Returns whether a frame whose steps ask for `taken` may take a further step of `tool` that asks for `further`.
     [[nodiscard]] bool fits(const sand::StepWork& taken, const sand::StepWork& further, const sand::Tool& tool) const;
@@ -52,6 +55,7 @@ private:
     std::int64_t periodNs_;
     std::int64_t drawNs_ = 0, hashNs_ = 0;  // of the last frame
     double sweepNs_ = 0, substepNs_ = 0;    // [ns], of one of them; 0: not known
+    double phaseNs_ = 0;                    // [ns], of a coarse phase; 0: not known
     std::int64_t substeps_ = 0;             // of the drag after which sweepNs_ was measured
     double growth_ = 1;                     // of sweepNs_ since the frame before, from 1 to kMostGrowth
     std::int64_t part_ = 0;                 // [sweep], at most in a step; 0 before the first step

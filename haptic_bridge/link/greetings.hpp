@@ -13,7 +13,7 @@
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // the bytes "SWHB" on the wire
-inline constexpr std::uint32_t kProtocolVersion = 10;
+inline constexpr std::uint32_t kProtocolVersion = 11;
 inline constexpr std::size_t kMaxSceneName = 256;  // [byte], also for the name of a device
 
 /// Versions and scene of one side. Both sides must have the same before the server may send steps.

@@ -176,7 +176,7 @@ void StepMaker::makeStep() {
     message.step.epoch = start_.epoch;
     message.step.number = replica_.stepNumber() + 1;
     message.serverTimeNs = now_();
-    if (replica_.holdsTool()) {
+    if (budget_.holdsHand(replica_)) {
         message.step.engaged = replica_.engaged();
         message.serverTimeNs = 0;  // no latency of the hand
     } else if (const std::int64_t readNs = fill(message.step); readNs != 0) {

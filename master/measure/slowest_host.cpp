@@ -29,6 +29,7 @@ haptic_bridge::FrameCost costOf(const std::vector<lockstep::Arrival>& arrivals,
     }
     for (auto& [machine, ranks] : machines) {
         cost.dragNs = std::max(cost.dragNs, median(ranks, &lockstep::Arrival::dragged));
+        cost.phaseNs = std::max(cost.phaseNs, median(ranks, &lockstep::Arrival::slid));
         cost.sweepNs = std::max(cost.sweepNs, median(ranks, &lockstep::Arrival::swept));
         cost.hashNs = std::max(cost.hashNs, median(ranks, &lockstep::Arrival::hashed));
     }

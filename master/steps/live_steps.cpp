@@ -21,18 +21,25 @@ namespace {
 class FrameWork {
 public:
     explicit FrameWork(const sand::Replica& replica)
-        : probe_(replica.probe()), engaged_(replica.engaged()), length_(replica.rules().substepLength()) {}
+        : probe_(replica.probe()),
+          engaged_(replica.engaged()),
+          hasCoarsePhase_(replica.rules().sweepPlan().hasCoarsePhase()),
+          length_(replica.rules().substepLength()) {}
     void add(const sand::Step& step) {
-        all_ += {step.sweeps, sand::substepsOf(step, probe_, engaged_, length_)};
+        const bool moves = step.engaged != engaged_ || (step.engaged && (step.heading || !step.path.empty()));
+        last_ = {step.sweeps, sand::substepsOf(step, probe_, engaged_, length_), moves && hasCoarsePhase_ ? 1 : 0};
+        all_ += last_;
         probe_ = step.path.empty() ? probe_ : step.path.back();
         engaged_ = step.engaged;
     }
     [[nodiscard]] const sand::StepWork& all() const { return all_; }
+    /// Returns the work of another step like the last one, without its sub-steps.
+    [[nodiscard]] sand::StepWork another() const { return {last_.sweeps, 0, last_.phases}; }
 
 private:
-    sand::StepWork all_;
+    sand::StepWork all_, last_;
     sand::ProbePoint probe_;
-    bool engaged_;
+    bool engaged_, hasCoarsePhase_;
     std::int32_t length_;  // of a sub-step [probe unit]
 };
 
@@ -192,8 +199,8 @@ ArrivedSteps LiveSteps::drain(const sand::Replica& replica, std::size_t most) {
         haptic_bridge::TimedStep& sent = next.front();
         taken.add(sent.step);
         steps.push_back({std::move(sent.step), sent.serverTimeNs, sent.serverHash, sent.receivedNs});
-        // One more with as many sweeps must fit, because a step that has been taken cannot be put back.
-        if (!budget_.fits(taken.all(), {steps.back().step.sweeps, 0}, replica.tool())) {
+        // Another one must fit, because a step that has been taken cannot be put back.
+        if (!budget_.fits(taken.all(), taken.another(), replica.tool())) {
             break;
         }
     }
@@ -210,7 +217,7 @@ ArrivedSteps LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most)
         ArrivedStep& next = steps.emplace_back();
         next.step.epoch = epoch_;
         next.step.number = replica.stepNumber() + steps.size();
-        if (replica.holdsTool()) {
+        if (budget_.holdsHand(replica)) {
             next.step.engaged = replica.engaged();
         } else {
             own_.fill(next, budget_.substeps(replica), now_());
@@ -224,7 +231,7 @@ ArrivedSteps LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most)
                            (next.step.engaged == replica.engaged() && !next.step.heading);
         more = known && !next.step.edit.any() && !replica.owed().any() &&
                next.step.sweeps == replica.mostSweeps(next.step) &&
-               budget_.fits(taken.all(), {next.step.sweeps, 0}, replica.tool());
+               budget_.fits(taken.all(), taken.another(), replica.tool());
     }
     return steps;
 }

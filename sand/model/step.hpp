@@ -93,14 +93,19 @@ struct Step {
     friend bool operator==(const Step&, const Step&) = default;
 };
 
+/// A part of a step that every step does whole. The sweeps, which may be spread over steps, come after these parts.
+enum class StepPart : std::uint8_t { movement, coarsePhase };  // the first has the edit, too
+
 /// Amount of work that a step asks of a replica.
 struct StepWork {
     std::int64_t sweeps = 0;
     std::int64_t substeps = 0;  // of the tool, in which it displaces sand
+    std::int64_t phases = 0;    // coarse phases, which cannot be divided (SweepPlan)
 
     StepWork& operator+=(const StepWork& other) {
         sweeps += other.sweeps;
         substeps += other.substeps;
+        phases += other.phases;
         return *this;
     }
     friend bool operator==(const StepWork&, const StepWork&) = default;

@@ -38,7 +38,7 @@ public:
         step.sweeps = std::min(replica_.mostSweeps(step), kPart);
         const std::int64_t began = host::monotonicNs();
         std::int64_t moved = began;
-        replica_.apply(step, [&moved] { moved = host::monotonicNs(); });
+        replica_.apply(step, [&moved](sand::StepPart) { moved = host::monotonicNs(); });
         const std::int64_t ended = host::monotonicNs();
         dragNs_ += moved - began;
         sweepNs_ += ended - moved;

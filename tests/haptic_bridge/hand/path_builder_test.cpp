@@ -12,9 +12,9 @@ constexpr int kStepsPerSecond = 60;
 
 HandSample at(std::int32_t x, bool engaged = true) { return {x + 1, {x, 0, 0}, engaged}; }
 
-sand::Step take(PathBuilder& builder) {
+sand::Step take(PathBuilder& builder, const haptic_bridge::SubstepLimit& limit = {}) {
     sand::Step step;
-    (void)builder.take(step);
+    (void)builder.take(step, limit);
     return step;
 }
 
@@ -228,6 +228,40 @@ TEST(PathBuilder, CatchesUpByStepsOfFourPeriods) {
     }
     EXPECT_EQ(last, 1000);
     EXPECT_EQ(steps, 15);
+}
+
+TEST(PathBuilder, AStepTakesAllOfAHandThatHovers) {
+    PathBuilder builder(kStepsPerSecond);
+    for (int x = 1; x <= 3000; ++x) {
+        builder.add({x * 1'000'000LL, {x, 0, 0}, x > 2000 && x <= 2050});
+    }
+    const sand::Step hovering = take(builder), pressed = take(builder), lifted = take(builder);
+    EXPECT_FALSE(hovering.engaged);
+    EXPECT_EQ(hovering.path.size(), sand::kMaxPathPoints);
+    EXPECT_EQ(hovering.path.back().x, 2000);
+    EXPECT_TRUE(pressed.engaged);
+    EXPECT_EQ(pressed.path.front().x, 2001);
+    EXPECT_EQ(pressed.path.back().x, 2050);
+    EXPECT_FALSE(lifted.engaged);
+    EXPECT_EQ(lifted.path.back().x, 3000) << "at once, although it is a second late";
+    EXPECT_EQ(builder.dropped(), 0U) << "points at which the tool hovers change no sand";
+}
+
+TEST(PathBuilder, EngagedSamplesWaitWhileAStepMayOnlyHover) {
+    PathBuilder builder(kStepsPerSecond);
+    builder.add(at(5, false));
+    builder.add(at(6));
+    const sand::Step hovering = take(builder, {.onlyHovering = true});
+    EXPECT_FALSE(hovering.engaged);
+    EXPECT_EQ(hovering.path.back().x, 5);
+    for (int i = 0; i < 3; ++i) {
+        const sand::Step waiting = take(builder, {.onlyHovering = true});
+        EXPECT_FALSE(waiting.engaged);
+        EXPECT_TRUE(waiting.path.empty());
+    }
+    const sand::Step pressed = take(builder);
+    EXPECT_TRUE(pressed.engaged);
+    EXPECT_EQ(pressed.path.back().x, 6);
 }
 
 TEST(PathBuilder, LetsGoOfAHandThatIsFarAhead) {

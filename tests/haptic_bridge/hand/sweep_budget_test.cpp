@@ -179,6 +179,56 @@ TEST_F(Budget, SweepsAfterADragCountAsLongerByItsArea) {
         << "a tool of 8 cells that moves by 4 cells moves 1.5 times the sand";
 }
 
+class BudgetOfALargeTool : public Budget {
+protected:
+    BudgetOfALargeTool() {
+        scene_.rules.tuning.tool.radius = 40 * sand::kProbePerCell;
+        scene_.rules.tuning.sweepsPerStep = 267;
+        sand_.emplace(scene_);
+        sand_->apply({1, 1, true, {borders::probeAt(100, 100, 0)}});
+    }
+    /// Returns the sweeps of a step that drags the tool by one sub-step.
+    std::int32_t moved() {
+        Step step{1, 2, true, {borders::probeAt(101, 100, 0)}};
+        return budget_.sweepsOf(step, *sand_);
+    }
+    std::int32_t held() { return budget_.sweepsOf({1, 2, true, {}}, *sand_); }
+};
+
+TEST_F(BudgetOfALargeTool, TheCoarsePhaseTakesItsShareAndLeavesAQuarter) {
+    ASSERT_EQ(sand_->lastWork().phases, 1);
+    ASSERT_FALSE(sand_->holdsTool());
+    (void)moved();
+    for (const auto& [phaseMs, moving] : {std::pair(0, 8), {1, 7}, {4, 4}, {7, 2}, {70, 2}}) {
+        budget_.shown({.sweeps = 40,
+                       .substeps = 1,
+                       .phases = 2,
+                       .sweepNs = 40 * kMillisecond,
+                       .phaseNs = 2 * phaseMs * kMillisecond},
+                      1);
+        EXPECT_EQ(moved(), moving) << phaseMs << " ms";
+        EXPECT_EQ(held(), 8) << "a tool that is held has no coarse phase";
+    }
+    budget_.shown({.sweeps = 40, .substeps = 1, .sweepNs = 40 * kMillisecond}, 1);
+    EXPECT_EQ(moved(), 2) << "a frame without a phase does not change its cost";
+}
+
+TEST_F(BudgetOfALargeTool, APathFitsBesideTheCoarsePhase) {
+    for (const auto& [phaseMs, substeps] : {std::pair(0, 8), {5, 3}, {7, 2}, {70, 2}}) {
+        budget_.shown({.substeps = 10, .phases = 1, .dragNs = 10 * kMillisecond, .phaseNs = phaseMs * kMillisecond}, 1);
+        EXPECT_EQ(budget_.substeps(*sand_).wanted, substeps) << phaseMs << " ms";
+    }
+}
+
+TEST_F(BudgetOfALargeTool, AFrameTakesTheCoarsePhasesThatFit) {
+    budget_.shown({.sweeps = 10, .phases = 1, .sweepNs = kMillisecond, .phaseNs = 3 * kMillisecond}, 1);
+    const sand::Tool tool = sand_->tool();
+    EXPECT_TRUE(budget_.fits({10, 0, 1}, {10, 0, 1}, tool)) << "8 ms";
+    EXPECT_FALSE(budget_.fits({10, 0, 1}, {11, 0, 1}, tool));
+    EXPECT_FALSE(budget_.fits({10, 0, 2}, {1, 0, 1}, tool));
+    EXPECT_TRUE(budget_.fits({10, 0, 1}, {40, 0, 0}, tool));
+}
+
 TEST_F(Budget, APathFitsByTheLastTimeOfASubstep) {
     const std::int64_t most = sand_->rules().mostSubsteps();
     EXPECT_EQ(budget_.substeps(*sand_).wanted, haptic_bridge::SubstepLimit::kNone) << "no cost is known yet";

@@ -50,11 +50,12 @@ TEST(Protocol, HasOneFormOfEachNumber) {
 }
 
 TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
-    base::Bytes shown{66, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 1};
-    for (std::uint8_t i = 4; i < 10; ++i) {
+    base::Bytes shown{82, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 1};
+    for (std::uint8_t i = 4; i < 12; ++i) {
         shown.insert(shown.end(), {i, 0, 0, 0, 0, 0, 0, 0});
     }
-    const FrameCost cost{.sweeps = 4, .substeps = 5, .sweepNs = 6, .dragNs = 7, .hashNs = 8, .drawNs = 9};
+    const FrameCost cost{
+        .sweeps = 4, .substeps = 5, .phases = 6, .sweepNs = 7, .dragNs = 8, .phaseNs = 9, .hashNs = 10, .drawNs = 11};
     EXPECT_EQ(encode(Shown{0x0102, 3, Held::disk, cost}), shown);
     base::Bytes hello{60, 0, 0, 0, 1, 'S', 'W', 'H', 'B', 6, 0, 0, 0, 1,   0, 0,
                       0,  2, 0, 0, 0, 0,   0,   0,   0,   1, 0, 0, 0, 'a', 2, 3};
@@ -151,7 +152,7 @@ TEST(Protocol, RefusesACauseOrAResultThatHasNoName) {
             return true;
         }
     };
-    const std::size_t held = 1 + 6 * sizeof(std::int64_t);  // in front of the cost of the frame
+    const std::size_t held = 1 + 8 * sizeof(std::int64_t);  // in front of the cost of the frame
     EXPECT_FALSE(refuses(Shown{}, held, 2));
     EXPECT_TRUE(refuses(Shown{}, held, 3)) << "a reason to hold the sand";
     EXPECT_TRUE(refuses(Shown{}, 1, 255)) << "a time below zero";

@@ -110,7 +110,8 @@ public:
     haptic_bridge::FrameCost cost;                       // of each frame
     bool forceUntilCtl = false;                          // the server was started with --force-until-ctl
     bool sandThreadHangs = false;                        // the thread that makes steps does nothing
-    std::int64_t sweepNs = 0;  // [ns], cost of a sweep and of a sub-step; 0: the frames of the wall have `cost`
+    std::int64_t sweepNs =
+        0;  // [ns], cost of a sweep, a sub-step and a coarse phase; 0: the frames of the wall have `cost`
     std::function<void(const base::Bytes& stepMessage)> onStep;
 
 private:
@@ -135,6 +136,8 @@ private:
             shown.cost.sweepNs = work.sweeps * sweepNs;
             shown.cost.substeps = work.substeps;
             shown.cost.dragNs = work.substeps * sweepNs;
+            shown.cost.phases = work.phases;
+            shown.cost.phaseNs = work.phases * sweepNs;
         }
         return shown;
     }

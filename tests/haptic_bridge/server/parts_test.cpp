@@ -49,9 +49,9 @@ class Parts : public testing::Test {
 protected:
     Parts() { maker_.start(1, {1, 0, sand::Replica(scene_).stateHash(), {}}); }
 
-    /// Makes a step. The hand is engaged at column `x` meanwhile.
-    const StepMessage& step(int x) {
-        hand_.samples.push_back({now_, {x * sand::kProbePerCell, 40 * sand::kProbePerCell, 0}, true});
+    /// Makes a step. The hand is at column `x` meanwhile.
+    const StepMessage& step(int x, bool engaged = true) {
+        hand_.samples.push_back({now_, {x * sand::kProbePerCell, 40 * sand::kProbePerCell, 0}, engaged});
         maker_.collect();
         maker_.makeStep();
         now_ += 1'000'000;
@@ -92,6 +92,30 @@ TEST_F(Parts, TheMovementOfTheHandWaitsUntilAllIsPaid) {
     EXPECT_EQ(third.step.sweeps, kWhole) << "less than twice the second part";
     EXPECT_EQ(third.serverTimeNs, now_ - 1'000'000);
     EXPECT_EQ(hand_.sinceNs.back(), 0);
+    EXPECT_EQ(hand_.dropped(), 0U);
+}
+
+TEST_F(Parts, AHandThatHoversGoesOnMeanwhile) {
+    const auto shown = [this](int x, bool engaged) {
+        const StepMessage made = step(x, engaged);
+        show(1'000'000);  // so that each step runs few sweeps
+        return made;
+    };
+    (void)shown(20, true);
+    while (maker_.sand().engaged()) {
+        (void)shown(20, false);
+    }
+    ASSERT_TRUE(maker_.sand().owed().any());
+    EXPECT_EQ(shown(30, false).step.path.back().x, 30 * sand::kProbePerCell);
+    ASSERT_TRUE(maker_.sand().owed().any());
+    while (maker_.sand().owed().any()) {
+        const StepMessage waiting = shown(40, true);
+        EXPECT_FALSE(waiting.step.engaged);
+        EXPECT_TRUE(waiting.step.path.empty()) << "no tool engages while sweeps are owed";
+    }
+    const StepMessage pressed = shown(40, true);
+    EXPECT_TRUE(pressed.step.engaged);
+    EXPECT_EQ(pressed.step.path.front().x, 40 * sand::kProbePerCell);
     EXPECT_EQ(hand_.dropped(), 0U);
 }
 

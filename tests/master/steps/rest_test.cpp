@@ -117,9 +117,9 @@ TEST_F(RestTest, NoStepIsLeftOutWhileAPointerTapsWithALargeTool) {
     for (int frame = 0; frame < 60; ++frame) {
         nowNs_ += 3 * kFrameNs;
         const int x = 12000 + 300 * frame;
-        point(live, x, frame % 2 == 0, 45'000'000);
+        point(live, x, false, 45'000'000);
         point(live, x + 100, frame % 3 == 0, 30'000'000);
-        point(live, x + 200, false);
+        point(live, x + 200, frame % 6 == 0);
         const std::vector<ArrivedStep> steps = live.next(wall_, wall_.stateHash(), 4);
         for (const ArrivedStep& timed : steps) {
             wall_.apply(timed.step);
