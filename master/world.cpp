@@ -22,6 +22,7 @@
 #include "master/journal/journal.hpp"
 #include "master/start_up.hpp"
 #include "scene/load/scene_file.hpp"
+#include "scene/load/step_cost.hpp"
 #include "walls/desk_windows.hpp"
 #include "walls/wall_units.hpp"
 
@@ -70,6 +71,9 @@ scene::Scene readScene(const lockstep::Cluster& cluster, const std::string& file
     }
     for (const std::string& warning : scene.warnings) {
         host::printLine("{}: warning: {}", file, warning);
+    }
+    if (const std::string slow = scene::longFrameText(scene, file); !slow.empty()) {
+        host::printLine("{}", slow);
     }
     return scene;
 }

@@ -9,7 +9,10 @@
 
 namespace sand {
 
-FieldSize FieldSize::of(const Rules& rules) { return {rules.columns, rules.rows, rules.tin != 0}; }
+FieldSize FieldSize::of(const Rules& rules) {
+    const bool large = rules.sweepPlan().hasCoarsePhase();
+    return {rules.columns, rules.rows, rules.tin != 0, large ? rules.tuning.tool.radius / kProbePerCell : 0};
+}
 
 std::optional<std::int64_t> FieldSize::bytesOfReplica() const {
     if (nominal) {
@@ -17,13 +20,21 @@ std::optional<std::int64_t> FieldSize::bytesOfReplica() const {
     }
     // The height in the Start, the height in the replica, and the fluxes through two faces of the cell.
     constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
-    return kPerCell * columns * rows;
+    // The undo keeps the cells of the patch. A group of 16 cells has two heights, two fluxes, a sum and a range.
+    constexpr std::int64_t kPerGroup = 16 * sizeof(std::int32_t) + 8 * sizeof(std::int32_t);
+    const auto within = [this](std::int64_t side) {
+        return std::min<std::int64_t>(side, columns) * std::min<std::int64_t>(side, rows);
+    };
+    const std::int64_t patch = within(std::int64_t{tool} * 7 / 2), undersides = within(std::int64_t{2} * tool);
+    return kPerCell * columns * rows + kPerGroup * (patch / 16) +
+           static_cast<std::int64_t>(sizeof(std::int32_t)) * undersides;
 }
 
 std::int64_t FieldSize::bytesOfHeights() const { return std::int64_t{sizeof(std::int32_t)} * columns * rows; }
 
 std::string FieldSize::text() const {
-    return std::to_string(columns) + " x " + std::to_string(rows) + (nominal ? " nominal cells of a TIN" : " cells");
+    return std::to_string(columns) + " x " + std::to_string(rows) + (nominal ? " nominal cells of a TIN" : " cells") +
+           (tool > 0 ? " with a tool of " + std::to_string(tool) + " cells" : "");
 }
 
 bool Start::recordsMovement() const { return tin == nullptr; }
@@ -111,7 +122,7 @@ std::int64_t Start::leastBytes() const {
         constexpr std::int64_t kPerVertex = 320;
         return kPerVertex * static_cast<std::int64_t>(tin->places.size());
     }
-    return FieldSize{rules.columns, rules.rows}.leastBytes();
+    return FieldSize::of(rules).leastBytes();
 }
 
 std::int64_t Start::bytesToDraw() const {
@@ -120,13 +131,13 @@ std::int64_t Start::bytesToDraw() const {
 }
 
 SizeText Start::sizeText() const {
-    const FieldSize field{rules.columns, rules.rows};
+    const FieldSize field = FieldSize::of(rules);
     if (tin != nullptr) {
         return {"a TIN's " + std::to_string(tin->places.size()) + " vertices over " + std::to_string(field.columns) +
                     " x " + std::to_string(field.rows) + " nominal cells",
                 "fewer of either"};
     }
-    return {field.text(), "fewer cells"};
+    return {field.text(), field.fewer()};
 }
 
 }  // namespace sand

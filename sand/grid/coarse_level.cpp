@@ -8,15 +8,16 @@
 namespace sand::grid {
 namespace {
 
-/// Returns a / b, rounded down. `b` is positive.
-std::int64_t floorOf(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
-
-/// Calls visit(x, y) for each cell of `cells`, row by row.
-template <class Visit>
-void forEach(const CellRect& cells, const Visit& visit) {
+/// Adds `each` to all cells, and one more away from zero to the first |`odd`| of them, row by row.
+void addEvenly(HeightField& field, const CellRect& cells, std::int32_t each, std::int64_t odd) {
+    const std::int32_t one = odd > 0 ? 1 : -1;
     for (int y = cells.y0; y < cells.y1; ++y) {
+        std::int32_t* const row = field.row(y);
         for (int x = cells.x0; x < cells.x1; ++x) {
-            visit(x, y);
+            row[x] += each;
+        }
+        for (int x = cells.x0; x < cells.x1 && odd != 0; ++x, odd -= one) {
+            row[x] += one;
         }
     }
 }
@@ -35,7 +36,7 @@ CoarseLevel::CoarseLevel(const Site& site, const CellRect& patch, int side)
     if (site.ground != nullptr || across_.before + across_.after + down_.before + down_.after > 0) {
         ground_.emplace(columns(), rows());
     }
-    findRange();
+    groupCells();
     fill();
 }
 
@@ -76,108 +77,9 @@ std::int32_t CoarseLevel::capOf(int column, int row) const {
         return highest_;
     }
     std::int32_t cap = -kMaxHeight;
-    forEach(CellRect{column - 1, row - 1, column + 2, row + 2}.clippedTo({0, 0, columns(), rows()}), [&](int x, int y) {
-        cap = std::max(
-            cap,
-            tops_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns()) + static_cast<std::size_t>(x)]);
-    });
+    forEach(CellRect{column - 1, row - 1, column + 2, row + 2}.clippedTo(inner()),
+            [&](int x, int y) { cap = std::max(cap, groupAt(x, y).highest); });
     return cap;
-}
-
-void CoarseLevel::findRange() {
-    lowest_ = kMaxHeight;
-    highest_ = -kMaxHeight;
-    for (int y = down_.first; y < down_.first + down_.count * side_; ++y) {
-        const std::int32_t* const row = site_.field.row(y) + across_.first;
-        for (int x = 0; x < across_.count * side_; ++x) {
-            lowest_ = std::min(lowest_, row[x]);
-            highest_ = std::max(highest_, row[x]);
-        }
-    }
-    floor_ = site_.rules.rim == Rim::open ? -kMaxHeight : lowest_;
-}
-
-void CoarseLevel::fill() {
-    const CellRect inner{across_.before, down_.before, across_.before + across_.count, down_.before + down_.count};
-    if (site_.obstacle != nullptr) {
-        const CellRect& below = site_.obstacle->cells;
-        const auto coarse = [this](int cell, const Axis& axis) {
-            return static_cast<int>(floorOf(cell - axis.first, side_)) + axis.before;
-        };
-        obstacle_.cells = below.empty() ? CellRect{}
-                                        : CellRect{coarse(below.x0, across_), coarse(below.y0, down_),
-                                                   coarse(below.x1 - 1, across_) + 1, coarse(below.y1 - 1, down_) + 1}
-                                              .clippedTo(inner);
-    }
-    if (!obstacle_.cells.empty()) {
-        const int padded = obstacle_.cells.y1 - obstacle_.cells.y0 + 2 * Obstacle::kRowsBeside;
-        obstacle_.underside.assign(static_cast<std::size_t>(obstacle_.stride()) * static_cast<std::size_t>(padded),
-                                   Obstacle::kFree);
-    }
-    if (!obstacle_.cells.empty()) {
-        tops_.assign(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()), -kMaxHeight);
-        forEach(inner, [this](int column, int row) {
-            std::int32_t& top = tops_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns()) +
-                                      static_cast<std::size_t>(column)];
-            forEach(cellsOf(column, row), [&](int x, int y) { top = std::max(top, site_.field.height(x, y)); });
-        });
-    }
-    forEach({0, 0, columns(), rows()}, [this](int column, int row) {
-        const bool edge = column < across_.before || column >= across_.before + across_.count || row < down_.before ||
-                          row >= down_.before + down_.count;
-        if (edge) {
-            ground_->setWall(column, row);
-            return;
-        }
-        std::int64_t sand = 0;
-        forEach(cellsOf(column, row), [&](int x, int y) { sand += site_.field.height(x, y); });
-        heights_->setHeight(column, row, static_cast<std::int32_t>(floorOf(sand, std::int64_t{side_} * side_)));
-        if (site_.ground != nullptr) {
-            fillGround(column, row);
-        }
-        if (!obstacle_.cells.clippedTo({column, row, column + 1, row + 1}).empty()) {
-            fillObstacle(column, row, sand);
-        }
-    });
-    if (!obstacle_.cells.empty()) {
-        obstacle_.findReached();
-    }
-}
-
-void CoarseLevel::fillGround(int column, int row) {
-    std::int64_t least = 0;
-    bool wall = false, rock = false;
-    forEach(cellsOf(column, row), [&](int x, int y) {
-        wall |= site_.ground->isWall(x, y);
-        rock |= site_.ground->bedrock(x, y) > floor_;
-        least += lowest(x, y, floor_);
-    });
-    if (wall) {
-        ground_->setWall(column, row);
-    } else if (rock) {
-        // Rounded up, so that the sand above it is never more than that of the cells.
-        const auto mean = static_cast<std::int32_t>(-floorOf(-least, std::int64_t{side_} * side_));
-        ground_->setBedrock(column, row, std::min(mean, heights_->height(column, row)));
-    }
-}
-
-/// Sets the underside so that the room below it is that of the cells. `sand` is the sum of their heights.
-void CoarseLevel::fillObstacle(int column, int row, std::int64_t sand) {
-    bool below = false;
-    forEach(cellsOf(column, row), [&](int x, int y) {
-        const CellRect& cells = site_.obstacle->cells;
-        below |= x >= cells.x0 && x < cells.x1 && y >= cells.y0 && y < cells.y1 &&
-                 site_.obstacle->row(y)[x - cells.x0] != Obstacle::kFree;
-    });
-    if (below) {
-        const auto first = static_cast<std::size_t>(obstacle_.row(row) - obstacle_.underside.data());
-        std::int32_t& under = obstacle_.underside[first + static_cast<std::size_t>(column - obstacle_.cells.x0)];
-        under = heights_->height(column, row);  // no longer free, as capOf() asks
-        const std::int32_t cap = capOf(column, row);
-        std::int64_t room = 0;
-        forEach(cellsOf(column, row), [&](int x, int y) { room += highest(x, y, cap); });
-        under += static_cast<std::int32_t>(floorOf(room - sand, std::int64_t{side_} * side_));
-    }
 }
 
 CoarseLevel::Result CoarseLevel::sweep(int sweeps) {
@@ -210,9 +112,24 @@ CoarseLevel::Result CoarseLevel::sweep(int sweeps) {
     return result;
 }
 
+bool CoarseLevel::shareEvenly(int column, int row, std::int64_t change) {
+    const std::int64_t area = std::int64_t{side_} * side_, each = change / area, odd = change - each * area;
+    const Group& group = groupAt(column, row);
+    const bool below = !obstacle_.cells.clippedTo({column, row, column + 1, row + 1}).empty();
+    const bool fits = change > 0 ? !below && group.highest + each + 1 <= highest_
+                                 : site_.ground == nullptr && group.lowest + each - 1 >= lowest_;
+    if (fits) {
+        addEvenly(site_.field, cellsOf(column, row), static_cast<std::int32_t>(each), odd);
+    }
+    return fits;
+}
+
 /// Shares out `change` evenly over the cells that have room for it, until nothing is left. Sand that falls over an open
 /// rim may leave a cell lower than all of the patch.
 void CoarseLevel::shareOut(int column, int row, std::int64_t change) {
+    if (shareEvenly(column, row, change)) {
+        return;
+    }
     const CellRect cells = cellsOf(column, row);
     std::int32_t least = lowest_;
     const std::int32_t cap = capOf(column, row);

@@ -45,10 +45,35 @@ private:
     struct Axis {
         int first = 0, count = 0, before = 0, after = 0;
     };
+    /// Sum and range of the heights in a coarse cell before it changes.
+    struct Group {
+        std::int64_t sum = 0;                                     // [unit]
+        std::int32_t lowest = kMaxHeight, highest = -kMaxHeight;  // [unit]
+    };
+    /// Returns a / b, rounded down. `b` is positive.
+    [[nodiscard]] static std::int64_t floorOf(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+    /// Calls visit(x, y) for each cell of `cells`, row by row.
+    template <class Visit>
+    static void forEach(const CellRect& cells, const Visit& visit) {
+        for (int y = cells.y0; y < cells.y1; ++y) {
+            for (int x = cells.x0; x < cells.x1; ++x) {
+                visit(x, y);
+            }
+        }
+    }
     [[nodiscard]] Axis axisOf(int from, int end, int cells) const;
     [[nodiscard]] CellRect cellsOf(int column, int row) const;
     [[nodiscard]] int columns() const { return across_.before + across_.count + across_.after; }
     [[nodiscard]] int rows() const { return down_.before + down_.count + down_.after; }
+
+    /// Returns the coarse cells that are not walls at the edges of the patch.
+    [[nodiscard]] CellRect inner() const {
+        return {across_.before, down_.before, across_.before + across_.count, down_.before + down_.count};
+    }
+    [[nodiscard]] const Group& groupAt(int column, int row) const {
+        return groups_[static_cast<std::size_t>(row - down_.before) * static_cast<std::size_t>(across_.count) +
+                       static_cast<std::size_t>(column - across_.before)];
+    }
 
     /// Returns the lowest height to which a cell may go, at least `least`.
     [[nodiscard]] std::int32_t lowest(int x, int y, std::int32_t least) const;
@@ -56,10 +81,16 @@ private:
     [[nodiscard]] std::int32_t highest(int x, int y, std::int32_t cap) const;
     /// Returns the highest height to which a cell of a coarse cell may go that is not below the tool.
     [[nodiscard]] std::int32_t capOf(int column, int row) const;
-    void findRange();
+    template <class Side>
+    [[nodiscard]] Group groupFrom(int x, int y, Side side) const;
+    void groupCells();
     void fill();
+    void makeObstacle();
     void fillGround(int column, int row);
     void fillObstacle(int column, int row, std::int64_t sand);
+    [[nodiscard]] std::int64_t roomOf(const CellRect& cells, const CellRect& below, std::int32_t cap) const;
+    /// Does what shareOut() does if it is clear that all cells have room. Returns whether it did.
+    bool shareEvenly(int column, int row, std::int64_t change);
     void shareOut(int column, int row, std::int64_t change);
 
     Site site_;
@@ -70,7 +101,7 @@ private:
     std::optional<HeightField> heights_;     // nullopt if the patch has less than a coarse cell
     std::optional<Ground> ground_;
     Obstacle obstacle_{};
-    std::vector<std::int32_t> tops_;  // highest cell of each coarse cell [unit]; empty without a tool
+    std::vector<Group> groups_;  // of inner(), row by row
 };
 
 }  // namespace sand::grid

@@ -138,6 +138,24 @@ std::string StepCost::text(const Scene& scene) const {
         shortText(seconds * 1e3), scene.rules.sweepPlan().moved, measured, columns, rows);
 }
 
+std::string longFrameText(const Scene& scene, const std::string& file) {
+    // Of a smaller tool, what is not spread over steps has never taken a tenth of kLongFrame: its movement, and its
+    // coarse phase over some 13 R² cells.
+    constexpr std::int32_t kLarge = 100;  // [cell]
+    if (scene.rules.tuning.tool.radius <= kLarge * sand::kProbePerCell || !scene.rules.sweepPlan().hasCoarsePhase()) {
+        return {};
+    }
+    const auto cost = stepCostOf(scene);
+    if (!cost || cost->seconds <= LargestTools::kLongFrame) {
+        return {};
+    }
+    return fmt::format(
+        "{}: a step in which this tool digs takes ≈ {} s on this machine, and holds a frame for as long; "
+        "sandwall-check "
+        "--scene {} prints up to which radius a step takes at most {:.0f} ms",
+        file, shortText(cost->seconds), file, LargestTools::kLongFrame * 1e3);
+}
+
 std::optional<LargestTools> largestToolsOf(const Scene& scene) {
     constexpr int kSmallest = 4;          // [cell]
     constexpr double kSecondsEach = 0.1;  // [s]

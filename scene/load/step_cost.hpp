@@ -48,6 +48,10 @@ struct LargestTools {
 /// cells.
 [[nodiscard]] std::optional<StepCost> stepCostOf(const Scene& scene);
 
+/// Returns one line for the user if a step of a height field holds a frame for longer than LargestTools::kLongFrame, or
+/// an empty text. `file` names the scene. Digs as stepCostOf() does if the tool is so large that this is possible.
+[[nodiscard]] std::string longFrameText(const Scene& scene, const std::string& file);
+
 /// Digs as stepCostOf() does, or in a whole TIN, with tools of the scene's kind whose radii double from 4 cells on, and
 /// interpolates between them. Ends at a radius that takes too long, that is half the field, or whose first press does
 /// not fit. Returns nullopt without a tool. Takes about a second, and a large TIN some seconds. Needs memory for a

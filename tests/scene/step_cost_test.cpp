@@ -40,6 +40,18 @@ TEST(StepCost, IsThatOfAStep) {
     EXPECT_FALSE(scene::stepCostOf(scene).has_value()) << "no tool digs";
 }
 
+TEST(StepCost, OfAToolThatHoldsFramesIsSaidBeforeTheStart) {
+    scene::Scene scene = samples::flatScene(2000, 2000, 100);
+    scene.rules.tuning.sweepsPerStep = 1667;
+    ASSERT_TRUE(scene.rules.sweepPlan().hasCoarsePhase());
+    EXPECT_EQ(scene::longFrameText(scene, "s.toml"), "") << "it is not measured";
+    scene.rules.tuning.tool.radius *= 9;
+    EXPECT_EQ(scene::longFrameText(scene, "s.toml").find("s.toml: a step in which this tool digs takes ≈ "), 0);
+    scene.rules.tuning.sweepsPerStep = 8;
+    ASSERT_FALSE(scene.rules.sweepPlan().hasCoarsePhase());
+    EXPECT_EQ(scene::longFrameText(scene, "s.toml"), "") << "all of its work is spread over steps";
+}
+
 // The radius doubles and the time is 16 times as long, so that the time grows with the fourth power between them.
 TEST(LargestTools, AreInterpolatedBetweenMeasuredRadii) {
     const std::vector<std::pair<double, double>> measured{{8, 0.001}, {16, 0.016}, {32, 0.256}};
