@@ -7,7 +7,7 @@ import pathlib
 
 # An order has no value at the first N. The other columns are empty in rows to which they do not apply.
 MAY_BE_NAN = {"order", "exponent"}
-MAY_BE_EMPTY = {"ms_to_rest", "cost", "unit", "why", "ratio", "bound"}
+MAY_BE_EMPTY = {"ms_to_rest", "cost", "unit", "why", "ratio", "bound", "behind", "at_end", "of_full"}
 
 IN_TIME = 2  # [ms], time of a step in which the hand digs
 
@@ -17,7 +17,7 @@ KEYS = {"pile", "method", "N", "bits", "band", "variant", "threads", "blocks", "
         "state", "field", "part", "kind", "what", "tool", "refined", "columns", "rows", "terrain", "mesh", "scheme",
         "code_path", "block", "compiler", "flags", "wall", "link", "load", "nodes", "eye_pixels", "sand", "samples", "unit",
         "used", "why", "world", "integers", "measure", "stays", "talus"}
-MORE_KEYS = {"work-precision": {"sweeps"}, "held-tools": {"seconds"}, "decay": {"sweeps"}, "mass-drift": {"sweeps"}, "detail": {"bound"}, "tin-simplify": {"share"},
+MORE_KEYS = {"work-precision": {"sweeps"}, "held-tools": {"seconds"}, "decay": {"sweeps"}, "mass-drift": {"sweeps"}, "detail": {"bound"}, "tin-simplify": {"share"}, "large-tools": {"place"},
              "ranks": {"ranks"}, "tin-active": {"raised"}}
 
 
@@ -147,6 +147,20 @@ def least_seconds(rows, error):
     """Returns the least time of all samples with at most this error, or None if all samples are worse."""
     good = [row["seconds_median"] for row in rows if row["misplaced"] <= error]
     return min(good) if good else None
+
+
+def tools_with_laws(rows):
+    """Returns N and R of the tools of large-tools that have been compared with all sweeps, in their order."""
+    return list(dict.fromkeys((row["N"], row["R"]) for row in rows if row["law"] != "all sweeps" and row["behind"] != ""))
+
+
+def built(rows):
+    """Returns the row of each case of large-tools that has the law as it is built: the first one with a coarse level."""
+    cases = {}
+    for row in rows:
+        if row["law"] != "all sweeps":
+            cases.setdefault((row["place"], row["tool"], row["N"], row["R"]), row)
+    return list(cases.values())
 
 
 def rounded(value, digits):

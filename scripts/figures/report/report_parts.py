@@ -71,6 +71,7 @@ PARTS = [
     Part("edit", "--sizes 512,1024,2048 --runs 10", "--sizes 512,2048 --runs 3", (20, 5), f"{SAND}/edit.cpp"),
     Part("held-tools", "--sizes 96", "--sizes 96", (6, 6), f"{SAND}/held_tools.cpp", check="--sizes 96"),
     Part("dig", "--sizes 256,512,2048 --runs 10", "--sizes 256,512 --runs 1", (1500, 120), f"{SAND}/dig.cpp"),
+    Part("large-tools", "--sizes 512,1024,2048,4096", "--sizes 512", (2400, 240), f"{SAND}/large_tools.cpp"),
     Part("throughput", "--sizes 64,128,256,512,1024,2048,4096 --runs 10", "--sizes 64,256,1024 --runs 5", (120, 10), f"{SAND}/throughput.cpp"),
     Part("force-rate", "--sizes 256 --runs 10", "--sizes 256 --runs 2", (15, 4), f"{FORCE}/force_rate.cpp"),
     Part("parts", "--sizes 512,1024,2048 --runs 10", "--sizes 512 --runs 3", (30, 2), f"{SAND}/parts.cpp"),

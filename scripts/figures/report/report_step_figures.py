@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The figures of docs/report about steps, forces and TINs. Each function takes a table and returns a matplotlib figure."""
 
-from report.report_data import IN_TIME
+from report.report_data import IN_TIME, built, tools_with_laws
 from report.report_plot import MARKERS, PILES, SERIES, label, legend_below, panels, percents, sizes_on
 
 
@@ -47,6 +47,27 @@ def dig(table):
         percents(axis)
     percents(axes[1])
     legend_below(figure, axes, 3)
+    return figure
+
+
+def large_tools(table):
+    figure, axes = panels(2)
+    spheres = table.where(place="level", tool="sphere")
+    for (size, radius), colour, marker in zip(tools_with_laws(spheres), SERIES, MARKERS):
+        rows = [row for row in spheres if (row["N"], row["R"]) == (size, radius) and row["law"] != "all sweeps"]
+        for row in rows:
+            axes[0].plot(row["ms_p50"], row["behind"], color=colour, marker=marker, linestyle="none",
+                         label=f"R = {radius:g}, N = {size}" if row is rows[0] else None)
+            axes[0].annotate(row["law"], (row["ms_p50"], row["behind"]), fontsize=6, textcoords="offset points", xytext=(4, 3))
+    label(axes[0], "time per step, median [ms]", "sand in another place than with all sweeps [%]", "labels: coarse levels and their sweeps")
+    for law, rows, colour, marker in (("all sweeps", [row for row in spheres if row["law"] == "all sweeps"], SERIES[1], MARKERS[1]),
+                                      ("as it is built", built(spheres), SERIES[0], MARKERS[0])):
+        axes[1].plot([row["R"] for row in rows], [row["ms_p50"] for row in rows], color=colour, marker=marker, linestyle="none", label=law)
+    label(axes[1], "radius of the tool [cells]", "time per step, median [ms]", "spheres on level sand")
+    sizes_on(axes[1], sorted({row["R"] for row in spheres}))
+    for axis in axes:
+        percents(axis)
+    legend_below(figure, axes, 4)
     return figure
 
 

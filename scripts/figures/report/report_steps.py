@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text of the report on steps, pictures and builds. Every number and every result in it comes from the tables."""
 
+import math
+
 from report.report_claims import count_of, listing, times
-from report.report_data import IN_TIME, markdown, percent, rounded
+from report.report_data import IN_TIME, built, markdown, percent, rounded
 from report.report_parts import PRESETS
 
 
@@ -50,6 +52,40 @@ def dig(tables):
             f"of the rows in which 99 % of the steps take {IN_TIME} ms or less: {'; '.join(best_in_time(table, *tool) for tool in tools)}.\n\n" +
             markdown(["sand", "N", "R [cells]", "cells/step", "sweeps/step", "p50 [ms]", "p99 [ms]", "behind", "lifted",
                       "bank [cells]", "reach [cells]", "after"], lines))
+
+
+def large_tools(tables):
+    table = tables["large-tools"]
+    rows = built(table.rows)
+    full = {case_of(row): row for row in table.rows if row["law"] == "all sweeps"}
+    lines = []
+    for row in rows:
+        one = full.get(case_of(row))
+        lines.append([row["place"], row["tool"], row["N"], row["R"], row["law"], f"{one['ms_p50']:.3g}" if one else "",
+                      f"{row['ms_p50']:.3g}", f"{row['ms_p99']:.3g}"] +
+                     ([f"{row['ratio']:.2g}", f"{row['behind']:.2g} %", f"{row['at_end']:.2g} %", f"{row['of_full']:.3g}"] if one else [""] * 4) +
+                     [row["steps_to_rest"], f"{row['rest_ms'] / 1e3:.2g}"])
+    spheres = [row for row in rows if row["tool"] == "sphere" and row["place"] == "level"]
+    first, last = (min(spheres, key=lambda row: row["R"]), max(spheres, key=lambda row: row["R"]))
+    compared = [row for row in rows if row["behind"] != ""]
+    exponent = math.log(last["ms_p50"] / first["ms_p50"]) / math.log(last["R"] / first["R"]) if last["R"] > first["R"] else 0
+    return (f"A hand digs along a circle for 40 steps and lifts the tool ([docs/sand.md](../sand.md#large-tools)). The reference has all "
+            "sweeps, R²/6 a step, and no coarse cells.\n\n"
+            "- *law*: coarse levels, each with the side of its cells and its sweeps, as it is built.\n"
+            "- *all*: time of a step with all sweeps; *p50*, *p99*: as it is built; *ratio*: p50 divided by *all*.\n"
+            "- *behind*, *at the end*: sand in another place than with all sweeps, at the end of the stroke and at rest.\n"
+            "- *highest*: highest sand at the end of the stroke, divided by that with all sweeps.\n"
+            "- *to rest*: steps and CPU time after lifting.\n\n"
+            f"The time of a step grows with R^{exponent:.2g} from R = {first['R']:g} to {last['R']:g}. At most "
+            f"{max(row['behind'] for row in compared):.2g} % of the sand is in another place behind the hand, and "
+            f"{max(row['at_end'] for row in compared):.2g} % at rest. In the figure, *near* has a patch that is half a radius smaller on "
+            "each side, and *capped* as many sweeps as a step without a movement, and no coarse cells.\n\n" +
+            markdown(["place", "tool", "N", "R [cells]", "law", "all [ms]", "p50 [ms]", "p99 [ms]", "ratio", "behind", "at the end",
+                      "highest", "steps to rest", "to rest [s]"], lines))
+
+
+def case_of(row):
+    return row["place"], row["tool"], row["N"], row["R"]
 
 
 def best_in_time(table, of_kind, size, radius):

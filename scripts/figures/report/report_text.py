@@ -41,6 +41,7 @@ SECTIONS = [
     Section("The hysteresis band", "band", ["band"], piles.band),
     Section("One edit", "edit", ["edit"], steps.edit),
     Section("Digging", "dig", ["dig"], steps.dig),
+    Section("Large tools", "large_tools", ["large-tools"], steps.large_tools),
     Section("Held tools", "held_tools", ["held-tools"], steps.held_tools),
     Section("Throughput", "throughput", ["throughput"], steps.throughput),
     Section("Mass", "mass_drift", ["mass-drift"], piles.mass_drift),
