@@ -275,7 +275,7 @@ Displacement::Work Displacement::pressAbove(HeightField& field, Rim rim, const G
 }
 
 Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to,
-                                      bool measures) const {
+                                      bool measures, std::int64_t mostSearches) const {
     const std::int64_t dx = std::int64_t{to.x} - from.x;
     const std::int64_t dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
@@ -298,7 +298,10 @@ Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground*
             if (measures && !all.largest) {
                 all.largest = largestRadius(field, rim, ground, at);  // refused sand has not moved
             }
-            all.add(pressAbove(field, rim, ground, at));
+            if (all.searches < mostSearches) {
+                ++all.searches;
+                all.add(pressAbove(field, rim, ground, at));
+            }
         }
     }
     return all;

@@ -60,21 +60,26 @@ public:
         CellRect cells{};                                    // cells that may have changed
         std::int64_t outflow = 0;                            // volume pushed over an open rim [unit · cell]
         std::int64_t refused = 0;                            // presses whose sand did not fit
+        std::int64_t searches = 0;                           // of them, for which a height was searched
         std::optional<std::int32_t> largest = std::nullopt;  // RefusedPress::largest of the first of them
 
         void add(const Work& other) {
             cells = cells.joinedWith(other.cells);
             outflow += other.outflow;
             refused += other.refused;
+            searches += other.searches;
         }
     };
 
+    /// A search for the height at which the sand of a press fits tries at most so many heights.
+    static constexpr std::int64_t kMostTrials = 22;
+
     /// Moves the tool from `from` to `to` in sub-steps of substepOnGrid(), and displaces the sand. If no cell can take
-    /// the sand of a press, the tool digs less deep there. `ground` may be null; its rock and walls do not move. Sand
-    /// stays on its side of walls, and of rock that is higher than the sand that the tool takes. If `measures`, returns
-    /// Work::largest.
-    Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to,
-              bool measures = false) const;
+    /// the sand of a press, the tool digs less deep there. After `mostSearches` of such presses it passes through the
+    /// sand instead. `ground` may be null; its rock and walls do not move. Sand stays on its side of walls, and of rock
+    /// that is higher than the sand that the tool takes. If `measures`, returns Work::largest.
+    Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to, bool measures = false,
+              std::int64_t mostSearches = INT64_MAX) const;
 
     /// Returns a rectangle that contains all cells of the field that drag() may change. It may contain further cells.
     [[nodiscard]] CellRect cellsChanged(const HeightField& field, ProbePoint from, ProbePoint to) const {

@@ -74,10 +74,13 @@ SurfaceChange GridSurface::takeChange() {
 void GridSurface::drag(const Tool& tool, std::span<const ProbePoint> whole) {
     const Displacement displacement(tool);
     const std::vector<ProbePoint> path = pathInSubsteps({whole.begin(), whole.end()}, substepOnGrid(tool));
+    // Searches take at most as long as the longest path.
+    std::int64_t searches = std::max<std::int64_t>(rules_.mostSubsteps() / Displacement::kMostTrials, 1);
     for (std::size_t i = 1; i < path.size(); ++i) {
         beforeStroke_.willChange(field_, displacement.cellsChanged(field_, path[i - 1], path[i]));
         const Displacement::Work done =
-            displacement.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i], !refused_.first);
+            displacement.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i], !refused_.first, searches);
+        searches -= done.searches;
         erosion_.touch(done.cells);
         touch(done.cells);
         outflow_ += done.outflow;

@@ -68,6 +68,25 @@ TEST(RefusedPress, DigsAsTheLowestToolWhosePressFits) {
     EXPECT_TRUE(sameHeights(higher, refused));
 }
 
+// A search takes as long as 22 presses.
+TEST(RefusedPress, PassesThroughTheSandAfterTheMostSearches) {
+    const scene::Scene scene = highScene(10);
+    const sand::grid::Displacement tool(scene.rules.tuning.tool);
+    const auto drag = [&](sand::HeightField& field, std::int64_t mostSearches) {
+        return tool.drag(field, sand::Rim::closed, nullptr, aboveHighSand(2, 34), aboveHighSand(2, 38), false,
+                         mostSearches);
+    };
+    sand::HeightField all = scene.terrain, none = scene.terrain, one = scene.terrain;
+    const auto searched = drag(all, INT64_MAX);
+    EXPECT_EQ(searched.searches, 4) << "a sub-step is a cell long";
+    EXPECT_EQ(drag(none, 0).searches, 0);
+    EXPECT_TRUE(sameHeights(none, scene.terrain));
+    EXPECT_EQ(drag(one, 1).searches, 1);
+    EXPECT_FALSE(sameHeights(one, scene.terrain));
+    EXPECT_FALSE(sameHeights(one, all));
+    EXPECT_EQ(one.volume(), scene.terrain.volume());
+}
+
 TEST(RefusedPress, TellsTheLargestRadiusOfTheShapeThatFits) {
     using enum sand::ToolKind;
     for (const auto& [kind, cells] : {std::pair(sphere, 10), {ellipsoid, 24}}) {
