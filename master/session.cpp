@@ -227,7 +227,12 @@ bool Session::showFrame(bool& more) {
     return true;
 }
 
-std::int32_t Session::sweepsOwed() const { return sand_.replica().holdsTool() ? sand_.replica().owed().left() : 0; }
+std::int32_t Session::sweepsOwed() const {
+    // In real time a hand that hovers does not wait (haptic_bridge::SweepBudget::holdsHand()).
+    const sand::Replica& sand = sand_.replica();
+    const bool waits = sand.holdsTool() && (sand.engaged() || options_.pace == haptic_bridge::Pace::fast);
+    return waits ? sand.owed().left() : 0;
+}
 
 haptic_bridge::FrameCost Session::cost() const {
     haptic_bridge::FrameCost cost = costOf(barrier_.arrivals(), hosts_);

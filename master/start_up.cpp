@@ -20,8 +20,7 @@ namespace master {
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::FieldSize& size, const std::string& file) {
     // The master makes the heights. If a TIN is made of them, a render rank needs as much memory to draw it.
     if (const auto lack = lockstep::lackOfMemory(ranks, size.leastBytes())) {
-        throw base::InputError(
-            fmt::format("{}: {} need {}; use {}, or more hosts", file, size.text(), *lack, size.fewer()));
+        throw base::InputError(fmt::format("{}: {} need {}; use fewer cells, or more hosts", file, size.text(), *lack));
     }
 }
 

@@ -8,11 +8,29 @@
 #include "sand/model/grid_codec.hpp"
 
 namespace sand {
+namespace {
 
-FieldSize FieldSize::of(const Rules& rules) {
-    const bool large = rules.sweepPlan().hasCoarsePhase();
-    return {rules.columns, rules.rows, rules.tin != 0, large ? rules.tuning.tool.radius / kProbePerCell : 0};
+/// Returns a lower bound of the memory that a coarse phase takes, and that an undo of it takes [byte].
+std::int64_t bytesOfCoarsePhase(const Rules& rules) {
+    if (!rules.sweepPlan().hasCoarsePhase()) {
+        return 0;
+    }
+    // The undo keeps the cells of the patch. A group of 16 cells has two heights, two fluxes, a sum and a range.
+    constexpr std::int64_t kPerGroup = 16 * sizeof(std::int32_t) + 8 * sizeof(std::int32_t);
+    const auto within = [&rules](std::int64_t length, std::int64_t width) {
+        return std::min<std::int64_t>(length, rules.columns) * std::min<std::int64_t>(width, rules.rows);
+    };
+    const Tool& tool = rules.tuning.tool;
+    const std::int64_t radius = tool.radius / kProbePerCell;
+    const std::int64_t half = isRound(tool.kind) ? radius : std::int64_t{tool.halfWidth} / kProbePerCell;
+    const std::int64_t patch = within(radius * 7 / 2, radius * 7 / 2),
+                       undersides = std::min(within(2 * radius, 2 * half), within(2 * half, 2 * radius));
+    return kPerGroup * (patch / 16) + static_cast<std::int64_t>(sizeof(std::int32_t)) * undersides;
 }
+
+}  // namespace
+
+FieldSize FieldSize::of(const Rules& rules) { return {rules.columns, rules.rows, rules.tin != 0}; }
 
 std::optional<std::int64_t> FieldSize::bytesOfReplica() const {
     if (nominal) {
@@ -20,21 +38,13 @@ std::optional<std::int64_t> FieldSize::bytesOfReplica() const {
     }
     // The height in the Start, the height in the replica, and the fluxes through two faces of the cell.
     constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
-    // The undo keeps the cells of the patch. A group of 16 cells has two heights, two fluxes, a sum and a range.
-    constexpr std::int64_t kPerGroup = 16 * sizeof(std::int32_t) + 8 * sizeof(std::int32_t);
-    const auto within = [this](std::int64_t side) {
-        return std::min<std::int64_t>(side, columns) * std::min<std::int64_t>(side, rows);
-    };
-    const std::int64_t patch = within(std::int64_t{tool} * 7 / 2), undersides = within(std::int64_t{2} * tool);
-    return kPerCell * columns * rows + kPerGroup * (patch / 16) +
-           static_cast<std::int64_t>(sizeof(std::int32_t)) * undersides;
+    return kPerCell * columns * rows;
 }
 
 std::int64_t FieldSize::bytesOfHeights() const { return std::int64_t{sizeof(std::int32_t)} * columns * rows; }
 
 std::string FieldSize::text() const {
-    return std::to_string(columns) + " x " + std::to_string(rows) + (nominal ? " nominal cells of a TIN" : " cells") +
-           (tool > 0 ? " with a tool of " + std::to_string(tool) + " cells" : "");
+    return std::to_string(columns) + " x " + std::to_string(rows) + (nominal ? " nominal cells of a TIN" : " cells");
 }
 
 bool Start::recordsMovement() const { return tin == nullptr; }
@@ -122,7 +132,7 @@ std::int64_t Start::leastBytes() const {
         constexpr std::int64_t kPerVertex = 320;
         return kPerVertex * static_cast<std::int64_t>(tin->places.size());
     }
-    return FieldSize::of(rules).leastBytes();
+    return FieldSize::of(rules).leastBytes() + bytesOfCoarsePhase(rules);
 }
 
 std::int64_t Start::bytesToDraw() const {
@@ -137,7 +147,11 @@ SizeText Start::sizeText() const {
                     " x " + std::to_string(field.rows) + " nominal cells",
                 "fewer of either"};
     }
-    return {field.text(), field.fewer()};
+    if (rules.sweepPlan().hasCoarsePhase()) {
+        const std::int32_t radius = rules.tuning.tool.radius / kProbePerCell;
+        return {field.text() + " with a tool of " + std::to_string(radius) + " cells", "fewer cells or a smaller tool"};
+    }
+    return {field.text(), "fewer cells"};
 }
 
 }  // namespace sand

@@ -19,21 +19,18 @@ namespace sand {
 struct FieldSize {
     std::int32_t columns = 0, rows = 0;  // [cell]
     bool nominal = false;                // whether a TIN is made of the field
-    std::int32_t tool = 0;               // radius of a tool that has a coarse phase [cell]; 0 without one
 
     static FieldSize of(const Rules& rules);
 
-    /// Returns a lower bound of the memory for a replica, its Start, and a coarse phase of its tool [byte]. Returns
+    /// Returns a lower bound of the memory for a replica and its Start [byte]. Returns
     /// nullopt for a TIN: only its Start gives the number of vertices, but a Start of vertices takes little memory.
     [[nodiscard]] std::optional<std::int64_t> bytesOfReplica() const;
     /// Returns the memory for a height per cell [byte]. A scene is loaded as heights, and a TIN is then made of them.
     [[nodiscard]] std::int64_t bytesOfHeights() const;
     /// Returns a lower bound of the memory for a scene of this size and a replica of it [byte].
     [[nodiscard]] std::int64_t leastBytes() const { return bytesOfReplica().value_or(bytesOfHeights()); }
-    /// Returns "300 x 200 cells", "300 x 200 cells with a tool of 60 cells" or "300 x 200 nominal cells of a TIN".
+    /// Returns "300 x 200 cells" or "300 x 200 nominal cells of a TIN".
     [[nodiscard]] std::string text() const;
-    /// Returns what saves memory: "fewer cells" or "fewer cells or a smaller tool".
-    [[nodiscard]] std::string_view fewer() const { return tool > 0 ? "fewer cells or a smaller tool" : "fewer cells"; }
     friend bool operator==(const FieldSize&, const FieldSize&) = default;
 };
 

@@ -78,7 +78,7 @@ sand::ProbePoint PathBuilder::approach(const sand::ProbePoint& goal, const Subst
 }
 
 std::int64_t PathBuilder::take(sand::Step& step, const SubstepLimit& limit) {
-    step.engaged = engaged_;
+    step.engaged = engaged_ && !limit.onlyHovering;
     if (waiting_.empty() || (limit.onlyHovering && waiting_.front().engaged)) {
         return 0;
     }

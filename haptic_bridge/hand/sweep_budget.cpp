@@ -97,7 +97,8 @@ SubstepLimit SweepBudget::substeps(const sand::Replica& replica) const {
                        .onlyHovering = replica.holdsTool()};
     if (pace_ == Pace::realtime && substepNs_ > 0) {
         const auto budget = static_cast<double>(budgetNs());
-        const double fit = std::max(budget - phaseNs_, budget / 4) / substepNs_;
+        const double phase = replica.rules().sweepPlan().hasCoarsePhase() ? phaseNs_ : 0;
+        const double fit = std::max(budget - phase, budget / 4) / substepNs_;
         limit.wanted = static_cast<std::int64_t>(std::clamp(fit, 1.0, static_cast<double>(limit.most)));
     }
     return limit;

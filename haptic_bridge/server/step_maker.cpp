@@ -179,8 +179,8 @@ void StepMaker::makeStep() {
     if (budget_.holdsHand(replica_)) {
         message.step.engaged = replica_.engaged();
         message.serverTimeNs = 0;  // no latency of the hand
-    } else if (const std::int64_t readNs = fill(message.step); readNs != 0) {
-        message.serverTimeNs = readNs;
+    } else if (const std::int64_t readNs = fill(message.step); readNs != 0 || replica_.holdsTool()) {
+        message.serverTimeNs = readNs;  // 0 if a press waits for sweeps that are owed
     }
     message.step.edit = std::exchange(edit_, {});
     message.step.sweeps = budget_.sweepsOf(message.step, replica_);

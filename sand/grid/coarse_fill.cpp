@@ -79,11 +79,25 @@ void CoarseLevel::makeObstacle() {
     }
 }
 
+/// Returns whether the rock of a cell is too steep for sand on the side of a neighbour.
+bool CoarseLevel::hasCliff(int x, int y) const {
+    const std::int32_t rock = site_.ground->bedrock(x, y);
+    const auto lower = [&](int beside, int row) {
+        if (!CellRect{beside, row, beside + 1, row + 1}.clippedTo(site_.field.bounds()).empty()) {
+            return !site_.ground->isWall(beside, row) &&
+                   std::int64_t{site_.field.height(beside, row)} + site_.rules.tuning.threshold < rock;
+        }
+        return site_.rules.rim == Rim::open && site_.rules.tuning.threshold < rock;  // its height beyond is 0
+    };
+    return rock > lowest_ && (lower(x - 1, y) || lower(x + 1, y) || lower(x, y - 1) || lower(x, y + 1));
+}
+
 void CoarseLevel::fillGround(int column, int row) {
     std::int64_t least = 0;
     bool wall = false, rock = false;
     forEach(cellsOf(column, row), [&](int x, int y) {
-        wall |= site_.ground->isWall(x, y);
+        // A cliff would count as sand that slides, in a coarse cell that has sand beside it.
+        wall |= site_.ground->isWall(x, y) || hasCliff(x, y);
         rock |= site_.ground->bedrock(x, y) > floor_;
         least += lowest(x, y, floor_);
     });

@@ -8,16 +8,12 @@
 namespace sand::grid {
 namespace {
 
-/// Adds `each` to all cells, and one more away from zero to the first |`odd`| of them, row by row.
-void addEvenly(HeightField& field, const CellRect& cells, std::int32_t each, std::int64_t odd) {
-    const std::int32_t one = odd > 0 ? 1 : -1;
+/// Adds `each` to all cells.
+void add(HeightField& field, const CellRect& cells, std::int32_t each) {
     for (int y = cells.y0; y < cells.y1; ++y) {
         std::int32_t* const row = field.row(y);
         for (int x = cells.x0; x < cells.x1; ++x) {
             row[x] += each;
-        }
-        for (int x = cells.x0; x < cells.x1 && odd != 0; ++x, odd -= one) {
-            row[x] += one;
         }
     }
 }
@@ -105,31 +101,31 @@ CoarseLevel::Result CoarseLevel::sweep(int sweeps) {
     forEach(heights_->bounds(), [&](int column, int row) {
         const std::int64_t change = std::int64_t{heights_->height(column, row)} - before.height(column, row);
         if (change != 0) {
-            shareOut(column, row, area * change);
+            shareOut(column, row, change);
             result.changed = result.changed.joinedWith(cellsOf(column, row));
         }
     });
     return result;
 }
 
-bool CoarseLevel::shareEvenly(int column, int row, std::int64_t change) {
-    const std::int64_t area = std::int64_t{side_} * side_, each = change / area, odd = change - each * area;
+bool CoarseLevel::shareEvenly(int column, int row, std::int64_t each) {
     const Group& group = groupAt(column, row);
     const bool below = !obstacle_.cells.clippedTo({column, row, column + 1, row + 1}).empty();
-    const bool fits = change > 0 ? !below && group.highest + each + 1 <= highest_
-                                 : site_.ground == nullptr && group.lowest + each - 1 >= lowest_;
+    const bool fits = each > 0 ? !below && group.highest + each <= highest_
+                               : site_.ground == nullptr && group.lowest + each >= lowest_;
     if (fits) {
-        addEvenly(site_.field, cellsOf(column, row), static_cast<std::int32_t>(each), odd);
+        add(site_.field, cellsOf(column, row), static_cast<std::int32_t>(each));
     }
     return fits;
 }
 
-/// Shares out `change` evenly over the cells that have room for it, until nothing is left. Sand that falls over an open
-/// rim may leave a cell lower than all of the patch.
-void CoarseLevel::shareOut(int column, int row, std::int64_t change) {
-    if (shareEvenly(column, row, change)) {
+/// Shares out a change of `each` per cell evenly over the cells that have room for it, until nothing is left. Sand that
+/// falls over an open rim may leave a cell lower than all of the patch.
+void CoarseLevel::shareOut(int column, int row, std::int64_t each) {
+    if (shareEvenly(column, row, each)) {
         return;
     }
+    const std::int64_t change = each * side_ * side_;
     const CellRect cells = cellsOf(column, row);
     std::int32_t least = lowest_;
     const std::int32_t cap = capOf(column, row);
@@ -148,14 +144,14 @@ void CoarseLevel::shareOut(int column, int row, std::int64_t change) {
         if (count == 0) {  // the range, the rock and the underside of a coarse cell are those of its cells
             throw std::logic_error("CoarseLevel: the change of a coarse cell does not fit into its cells");
         }
-        const std::int64_t each = left / count;
-        std::int64_t odd = left - each * count;
+        const std::int64_t share = left / count;
+        std::int64_t odd = left - share * count;
         forEach(cells, [&](int x, int y) {
             const std::int64_t height = site_.field.height(x, y), most = limit(x, y);
             if (left == 0 || !(change > 0 ? height < most : height > most)) {
                 return;
             }
-            const std::int64_t wanted = height + each + (odd > 0 ? 1 : odd < 0 ? -1 : 0);
+            const std::int64_t wanted = height + share + (odd > 0 ? 1 : odd < 0 ? -1 : 0);
             odd -= odd > 0 ? 1 : odd < 0 ? -1 : 0;
             const std::int64_t now = change > 0 ? std::min(wanted, most) : std::max(wanted, most);
             site_.field.setHeight(x, y, static_cast<std::int32_t>(now));

@@ -17,8 +17,8 @@ namespace sand::grid {
 ///
 /// A coarse cell is as high as the mean of its cells. Its change is shared out over them. So the volume is exact. No
 /// cell leaves the range of the patch's heights, except where sand falls over an open rim. No cell goes below its rock
-/// or rises into the tool. A coarse cell with a wall is a wall. Coarse cells are counted from the nearer rim of the
-/// field on each axis. Cells that are left over lie at the farther rim. Used by one thread.
+/// or rises into the tool. A coarse cell with a wall or a cliff of rock is a wall. Coarse cells are counted from the
+/// nearer rim of the field on each axis. Cells that are left over lie at the farther rim. Used by one thread.
 class CoarseLevel {
 public:
     /// The field, and ground and obstacle, which may be null. All must outlive the level.
@@ -86,12 +86,13 @@ private:
     void groupCells();
     void fill();
     void makeObstacle();
+    [[nodiscard]] bool hasCliff(int x, int y) const;
     void fillGround(int column, int row);
     void fillObstacle(int column, int row, std::int64_t sand);
     [[nodiscard]] std::int64_t roomOf(const CellRect& cells, const CellRect& below, std::int32_t cap) const;
     /// Does what shareOut() does if it is clear that all cells have room. Returns whether it did.
-    bool shareEvenly(int column, int row, std::int64_t change);
-    void shareOut(int column, int row, std::int64_t change);
+    bool shareEvenly(int column, int row, std::int64_t each);
+    void shareOut(int column, int row, std::int64_t each);
 
     Site site_;
     int side_;

@@ -72,7 +72,7 @@ public:
     };
 
     /// A search for the height at which the sand of a press fits tries at most so many heights.
-    static constexpr std::int64_t kMostTrials = 22;
+    static constexpr std::int64_t kMostTrials = 25;
 
     /// Moves the tool from `from` to `to` in sub-steps of substepOnGrid(), and displaces the sand. If no cell can take
     /// the sand of a press, the tool digs less deep there. After `mostSearches` of such presses it passes through the

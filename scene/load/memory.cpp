@@ -19,8 +19,7 @@ void requireReplica(const Scene& scene, const std::string& file, std::int64_t fr
 }
 
 void requireReplica(const sand::FieldSize& size, const std::string& file, std::int64_t freeBytes) {
-    requireBytes(size.leastBytes(), freeBytes, file, size.text(),
-                 fmt::format("{}, or a machine with more memory", size.fewer()));
+    requireBytes(size.leastBytes(), freeBytes, file, size.text(), "fewer cells, or a machine with more memory");
 }
 
 }  // namespace scene

@@ -84,13 +84,31 @@ private:
     std::int64_t dragNs_ = 0, sweepNs_ = 0, endedNs_ = 0;  // the last one: of the steps that have run whole
 };
 
-/// Returns how many times as many cells the tool moves on the whole field as on a part, which may be smaller than it.
-double moreOnTheField(const sand::Start& field, const sand::Start& part) {
+/// Radius of the largest tool that is measured in a part of the field [cell]. A larger one would cover the part.
+constexpr std::int32_t kLargestMeasured = kMostCells / 4;
+
+/// Returns the tuning with which a tool of `tuning` is measured: that of a smaller tool if it is large.
+sand::Tuning measuredAs(sand::Tuning tuning) {
+    const std::int64_t radius = tuning.tool.radius, largest = std::int64_t{kLargestMeasured} * sand::kProbePerCell;
+    if (radius > largest) {
+        tuning.tool.halfWidth = static_cast<std::int32_t>(tuning.tool.halfWidth * largest / radius);
+        tuning.tool.radius = static_cast<std::int32_t>(largest);
+        const double smaller = static_cast<double>(largest) / static_cast<double>(radius);
+        tuning.sweepsPerStep = std::max(static_cast<std::int32_t>(tuning.sweepsPerStep * smaller * smaller), 1);
+    }
+    return tuning;
+}
+
+/// Returns how many times as many cells a tool of `radius` moves on the whole field as the tool that was measured moves
+/// on the part, which may be smaller than what it moves.
+double moreOnTheField(const sand::Start& field, std::int32_t radius, const sand::Start& part) {
     // A coarse phase slides sand up to two radii from the tool.
-    const int radii = part.rules.sweepPlan().hasCoarsePhase() ? 4 : 2;
-    const int width = radii * part.rules.tuning.tool.radius / sand::kProbePerCell;
-    const auto more = [width](int cells, int ofPart) {
-        return std::max(1.0, static_cast<double>(std::min(cells, width)) / ofPart);
+    const std::int64_t radii = part.rules.sweepPlan().hasCoarsePhase() ? 4 : 2;
+    const auto more = [&](int cells, int ofPart) {
+        const std::int64_t moved = std::min<std::int64_t>(cells, radii * radius / sand::kProbePerCell);
+        const std::int64_t measured =
+            std::min<std::int64_t>(ofPart, radii * part.rules.tuning.tool.radius / sand::kProbePerCell);
+        return std::max(1.0, static_cast<double>(moved) / static_cast<double>(measured));
     };
     return more(field.rules.columns, part.rules.columns) * more(field.rules.rows, part.rules.rows);
 }
@@ -120,14 +138,16 @@ sand::ProbePoint digPlace(const sand::Rules& rules, std::int64_t step, std::int3
 }
 
 std::optional<StepCost> stepCostOf(const Scene& scene) {
-    const std::optional<sand::Start> part = scene.middle(kMostCells);
-    if (!part || scene.rules.tuning.tool.radius == 0) {
+    std::optional<sand::Start> part = scene.middle(kMostCells);
+    const std::int32_t radius = scene.rules.tuning.tool.radius;
+    if (!part || radius == 0) {
         return std::nullopt;
     }
+    part->rules.tuning = measuredAs(scene.rules.tuning);
     Digger digger(*part);
     StepCost cost{.columns = part->rules.columns, .rows = part->rules.rows};
     cost.measured = digger.digFor(kSeconds);
-    cost.seconds = digger.secondsOfAStep(scene.rules.sweepPlan().moved) * moreOnTheField(scene, *part);
+    cost.seconds = digger.secondsOfAStep(part->rules.sweepPlan().moved) * moreOnTheField(scene, radius, *part);
     return cost;
 }
 
@@ -164,6 +184,7 @@ std::optional<LargestTools> largestToolsOf(const Scene& scene) {
         return std::nullopt;
     }
     const std::int64_t began = host::monotonicNs();
+    const bool grid = scene.tin == nullptr;
     sand::Start part = scene.middle(kMostCells).value_or(scene);
     constexpr std::int32_t kLargest = sand::kLargestToolRadius / sand::kProbePerCell;  // [cell]
     const int largest = std::min({scene.rules.columns / 2, scene.rules.rows / 2, kLargest});
@@ -171,13 +192,15 @@ std::optional<LargestTools> largestToolsOf(const Scene& scene) {
     for (int cells = kSmallest; cells <= largest; cells *= 2) {
         Material material = scene.material;
         material.toolRadius = cells * scene.grid().cellSize;
-        part.rules.tuning = tuningOf(material, scene.grid());
+        const sand::Tuning tuning = tuningOf(material, scene.grid());
+        part.rules.tuning = grid ? measuredAs(tuning) : tuning;
         Digger digger(part);
         (void)digger.digFor(kSecondsEach);
         if (digger.wasRefused()) {
             break;
         }
-        const double seconds = digger.secondsOfAStep(part.rules.sweepPlan().moved) * moreOnTheField(scene, part);
+        const double more = moreOnTheField(scene, tuning.tool.radius, part);
+        const double seconds = digger.secondsOfAStep(part.rules.sweepPlan().moved) * more;
         measured.emplace_back(cells, seconds);
         if (seconds > LargestTools::kLongFrame || secondsSince(began) > kSecondsInAll) {
             break;

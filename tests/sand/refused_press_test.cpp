@@ -68,7 +68,7 @@ TEST(RefusedPress, DigsAsTheLowestToolWhosePressFits) {
     EXPECT_TRUE(sameHeights(higher, refused));
 }
 
-// A search takes as long as 22 presses.
+// A search takes as long as 25 presses.
 TEST(RefusedPress, PassesThroughTheSandAfterTheMostSearches) {
     const scene::Scene scene = highScene(10);
     const sand::grid::Displacement tool(scene.rules.tuning.tool);

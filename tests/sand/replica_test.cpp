@@ -306,7 +306,7 @@ TEST(Start, OfAHeightFieldAnswersForItsCells) {
 TEST(Start, OfALargeToolAnswersForItsCoarsePhase) {
     scene::Scene scene = samples::flatScene(400, 800, 100);
     scene.rules.tuning.sweepsPerStep = 4000;
-    EXPECT_EQ(sand::FieldSize::of(scene.rules).tool, 100);
+    EXPECT_EQ(sand::FieldSize::of(scene.rules), (sand::FieldSize{400, 800})) << "a scene file has this size, too";
     EXPECT_EQ(scene.sizeText().what, "400 x 800 cells with a tool of 100 cells");
     EXPECT_EQ(scene.sizeText().fewer, "fewer cells or a smaller tool");
     EXPECT_EQ(scene.leastBytes(), 16 * 400 * 800 + 96 * (350 * 350 / 16) + 4 * 200 * 200);

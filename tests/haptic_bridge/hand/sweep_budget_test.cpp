@@ -218,6 +218,8 @@ TEST_F(BudgetOfALargeTool, APathFitsBesideTheCoarsePhase) {
         budget_.shown({.substeps = 10, .phases = 1, .dragNs = 10 * kMillisecond, .phaseNs = phaseMs * kMillisecond}, 1);
         EXPECT_EQ(budget_.substeps(*sand_).wanted, substeps) << phaseMs << " ms";
     }
+    scene_.rules.tuning.tool.radius = 12 * sand::kProbePerCell;
+    EXPECT_EQ(budget_.substeps(sand::Replica(scene_)).wanted, 8) << "a smaller tool has no coarse phase";
 }
 
 TEST_F(BudgetOfALargeTool, AFrameTakesTheCoarsePhasesThatFit) {
