@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of many sweeps that are spread over frames: processes that are killed meanwhile, and walls that are slow.
+// Steps of many sweeps that are spread over frames, and steps with a coarse phase: processes that are killed meanwhile,
+// and walls that are slow.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <csignal>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,6 +14,14 @@
 #include "tests/cluster/session_fixture.hpp"
 
 namespace {
+
+/// A step of the journal.
+struct Played {
+    std::uint64_t frame = 0, number = 0;
+    std::uint32_t epoch = 0;
+    bool owes = false;  // whether sweeps are owed after it
+    std::int64_t phases = 0;
+};
 
 /// The tool has a radius of 16 cells and a short settling time. A step has 2134 sweeps, and so takes many frames. A
 /// larger tool would have a coarse phase and few sweeps.
@@ -43,32 +56,30 @@ protected:
     static void kill(const support::ChildProcess& session, const std::string& program) {
         ::kill(support::findProgram(session.family(), program).value(), SIGKILL);
     }
+    /// Plays the journal as an undisturbed replica does.
+    [[nodiscard]] std::vector<Played> played() const {
+        const journal::Journal whole = master::readJournal(folder_ / "out" / "session.journal");
+        sand::Replica replica(whole.scene);
+        std::vector<Played> steps;
+        for (const journal::JournalFrame& frame : whole.frames) {
+            for (const sand::Step& step : frame.steps) {
+                replica.apply(step);
+                steps.push_back(
+                    {frame.frame, step.number, step.epoch, replica.owed().any(), replica.lastWork().phases});
+            }
+        }
+        return steps;
+    }
     /// Returns whether sweeps are owed after step `number` of the journal.
     [[nodiscard]] bool owesAfter(std::uint64_t number) const {
-        const journal::Journal whole = master::readJournal(folder_ / "out" / "session.journal");
-        sand::Replica replica(whole.scene);
-        for (const journal::JournalFrame& frame : whole.frames) {
-            for (const sand::Step& step : frame.steps) {
-                replica.apply(step);
-                if (step.number == number) {
-                    return replica.owed().any();
-                }
-            }
-        }
-        return false;
+        const std::vector<Played> steps = played();
+        return std::any_of(steps.begin(), steps.end(),
+                           [&](const Played& step) { return step.number == number && step.owes; });
     }
     /// Returns how many steps of the journal leave sweeps to later steps.
-    [[nodiscard]] int stepsThatOwe() const {
-        const journal::Journal whole = master::readJournal(folder_ / "out" / "session.journal");
-        sand::Replica replica(whole.scene);
-        int owe = 0;
-        for (const journal::JournalFrame& frame : whole.frames) {
-            for (const sand::Step& step : frame.steps) {
-                replica.apply(step);
-                owe += replica.owed().any() ? 1 : 0;
-            }
-        }
-        return owe;
+    [[nodiscard]] std::ptrdiff_t stepsThatOwe() const {
+        const std::vector<Played> steps = played();
+        return std::count_if(steps.begin(), steps.end(), [](const Played& step) { return step.owes; });
     }
     void expectOneSand(support::ChildProcess& session) const {
         session.signal(SIGINT);
@@ -154,6 +165,55 @@ TEST_F(Spread, WithTheFastPaceTheSandDependsOnNoLoad) {
         EXPECT_EQ(ends.back()["state_hash"], ends.front()["state_hash"]);
     }
     EXPECT_GT(stepsThatOwe(), kSteps / 2) << "few steps were spread, so that the test shows nothing";
+}
+
+/// The tool has a radius of 30 cells on a field of 128 x 128 cells.
+class LargeToolSession : public Spread {
+protected:
+    std::vector<std::string> arguments() {
+        const std::string scene = write("scene.toml",
+                                        "name = \"test\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\nheight = "
+                                        "0.9\n[material]\n[tool]\nradius = 0.46875\n");
+        return {"--wall", wall(1, 2, "mono"), "--scene",    scene,    "--device",         "script:gis", "--out",
+                out(),    "--no-pictures",    "--restarts", "100000", "--restart-window", "0.001"};
+    }
+};
+
+// The hand of a fast session digs from step 1 to step 73, about four steps in a frame. The rank that dies is started
+// again. The flipped bit is found and healed.
+TEST_F(LargeToolSession, LosesNothingIfRanksDieAndDifferInACoarsePhase) {
+    constexpr std::uint64_t kDies = 6, kDiffers = 12;  // frames
+    std::vector<std::string> all = arguments();
+    all.insert(all.end(), {"--pace", "fast", "--steps", "150", "--inject", fmt::format("die:rank=1,frame={}", kDies),
+                           "--inject", fmt::format("diverge:rank=2,frame={},bit=12", kDiffers)});
+    const Ended ended = runToEnd(all);
+    EXPECT_EQ(ended.status, 0) << ended.output;
+    EXPECT_GE(summary()["recoveries"].size(), 1U);
+    EXPECT_EQ(summary()["healed"], 1);
+    EXPECT_EQ(summary()["server_divergences"], 0);
+    EXPECT_EQ(summary()["state_hash"], replayedHash());
+    std::map<std::uint64_t, std::int64_t> phases;
+    for (const Played& step : played()) {
+        phases[step.frame] += step.phases;
+    }
+    EXPECT_GT(phases[kDies], 0);
+    EXPECT_GT(phases[kDiffers], 0);
+}
+
+TEST_F(LargeToolSession, GoesOnAfterItsHapticServerIsKilledWhileTheToolDigs) {
+    const auto session = start(arguments());
+    expectHand(*session);
+    awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > 10; });
+    kill(*session, "sandwall-haptic-server");
+    ASSERT_FALSE(session->waitForEvent("link", {{"state", "linked"}, {"epoch", 3}}).is_null()) << session->output();
+    const int linked = ask("status")["step"];
+    awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > linked + 150; });
+    expectOneSand(*session);
+    const std::vector<Played> steps = played();
+    const auto lost = std::find_if(steps.begin(), steps.end(), [](const Played& step) { return step.epoch > 1; });
+    const auto digs = [](const Played& step) { return step.phases > 0; };
+    EXPECT_TRUE(std::any_of(lost - std::min<std::ptrdiff_t>(lost - steps.begin(), 30), lost, digs)) << "it dug before";
+    EXPECT_TRUE(std::any_of(lost, steps.end(), digs)) << "it digs again";
 }
 
 }  // namespace

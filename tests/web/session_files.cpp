@@ -89,7 +89,8 @@ sand::Step loops(Written& session, std::uint64_t number) {
     sand::Step step{.number = number, .engaged = number % 120 < 100, .path = {}};
     const sand::Rules& rules = session.sand().rules();
     if (session.sand().holdsTool()) {
-        return step;  // the tool stays where it is while sweeps are owed
+        step.engaged = session.sand().engaged();  // the tool stays as it is while sweeps are owed
+        return step;
     }
     const auto heights = sand::startHeights(session.scene());
     for (int i = 1; i <= 4; ++i) {
@@ -159,9 +160,9 @@ void everyEdit(const std::string& name, const scene::Scene& scene, const std::fi
     session.end(folder / (name + ".journal"));
 }
 
-/// Rock that is bare in places, walls, a band, long cells and an open rim, with every tool.
-void everyTool(const std::filesystem::path& folder, int frames = 200) {
-    scene::Scene scene = samples::flatScene(97, 61, 6);
+/// Returns rock that is bare in places, walls, a band, long cells and an open rim.
+scene::Scene rockyScene(double toolCells) {
+    scene::Scene scene = samples::flatScene(97, 61, toolCells);
     sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     auto ground = std::make_shared<sand::Ground>(scene.terrain.columns(), scene.terrain.rows());
     for (int y = 0; y < scene.terrain.rows(); ++y) {
@@ -178,12 +179,44 @@ void everyTool(const std::filesystem::path& folder, int frames = 200) {
     scene.rules.aspect = 3 * sand::kUnitsPerCell / 4;
     scene.rules.tuning.startThreshold = sand::kUnitsPerCell + sand::kUnitsPerCell / 10;
     scene.rules.rim = sand::Rim::open;
+    return scene;
+}
+
+/// Rocky sand with every tool.
+void everyTool(const std::filesystem::path& folder, int frames = 200) {
+    const scene::Scene scene = rockyScene(6);
     Written session(scene, false);  // its hand never waits
     std::mt19937 random(73);
     for (int frame = 0; frame < frames; ++frame) {
         session.frame(1, [&](std::uint64_t number) { return samples::wildStep(number, scene.rules, random); });
     }
     session.end(folder / "every_tool.journal");
+}
+
+/// Rocky sand with a tool that has a coarse phase. It is lifted, and becomes a foot.
+void coarsePhases(const std::filesystem::path& folder) {
+    scene::Scene scene = rockyScene(30);
+    scene.rules.tuning.sweepsPerStep = 150;
+    sand::Tuning foot = scene.rules.tuning;
+    foot.tool.kind = sand::ToolKind::footprint;
+    foot.tool.halfWidth = foot.tool.radius / 2;
+    Written session(scene);
+    int phases = 0;
+    for (int frame = 0; frame < 65; ++frame) {
+        session.frame(2, [&](std::uint64_t number) {
+            sand::Step step = loops(session, number);
+            if (number == 60) {
+                step.edit = sand::Edit::tuned(foot);
+                step.edit.number = 1;
+            }
+            phases += session.sand().hasCoarsePhase(step) ? 1 : 0;
+            return step;
+        });
+    }
+    if (phases < 50) {
+        throw std::logic_error(fmt::format("{} coarse phases show little", phases));
+    }
+    session.end(folder / "coarse_phases.journal");
 }
 
 /// A short session of a kind of tool, turned and mirrored. The tool is in the sand at the end.
@@ -257,6 +290,7 @@ int main(int count, char** arguments) {
     everyEdit("edits_of_a_grid", scene::loadScene("scenes/stroke.toml"), folder);
     everyEdit("edits_of_a_tin", scene::loadScene("scenes/gis_tin.toml"), folder);
     everyTool(folder);
+    coarsePhases(folder);
     for (const auto& [kind, name] : sand::valuesOf(sand::ToolKind{})) {
         shape(fmt::format("tool_{}", name), kind, 0, folder);
     }

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "host/worker_pool.hpp"
+#include "tests/sand/coarse/limits.hpp"
 #include "tests/sand/grid/random_worlds.hpp"
 
 namespace {
@@ -24,35 +25,6 @@ CellRect randomPatch(World& world) {
     return {x - world.below(9), y - world.below(9), x + 1 + world.below(60), y + 1 + world.below(60)};
 }
 
-/// Expects that no cell has left the range of the field, its rock, or the underside of the tool.
-void expectWithinLimits(const World& world, const sand::HeightField& before, const CellRect& changed,
-                        const Obstacle* tool) {
-    const auto [lowest, highest] = [&] {
-        std::int32_t low = sand::kMaxHeight, high = -sand::kMaxHeight;
-        for (int y = 0; y < before.rows(); ++y) {
-            low = std::min(low, *std::min_element(before.row(y), before.row(y) + before.columns()));
-            high = std::max(high, *std::max_element(before.row(y), before.row(y) + before.columns()));
-        }
-        return std::pair(low, high);
-    }();
-    for (int y = 0; y < before.rows(); ++y) {
-        for (int x = 0; x < before.columns(); ++x) {
-            const std::int32_t was = before.height(x, y), is = world.field.height(x, y);
-            if (is == was) {
-                continue;
-            }
-            ASSERT_FALSE(changed.clippedTo({x, y, x + 1, y + 1}).empty()) << x << ", " << y;
-            ASSERT_TRUE(is >= lowest || world.rules.rim == sand::Rim::open);  // sand has fallen over it
-            ASSERT_LE(is, highest);
-            ASSERT_FALSE(world.ground && world.ground->isWall(x, y)) << x << ", " << y;
-            ASSERT_GE(is, world.ground ? world.ground->bedrock(x, y) : -sand::kMaxHeight) << x << ", " << y;
-            if (tool != nullptr && !tool->cells.clippedTo({x, y, x + 1, y + 1}).empty()) {
-                ASSERT_LE(is, std::max(was, tool->row(y)[x - tool->cells.x0])) << x << ", " << y;
-            }
-        }
-    }
-}
-
 TEST(CoarseLevel, KeepsVolumeRangeRockWallsAndTheToolOnRandomWorlds) {
     int moved = 0, outflows = 0, tools = 0;
     for (unsigned seed = 0; seed < 1000; ++seed) {
@@ -65,7 +37,8 @@ TEST(CoarseLevel, KeepsVolumeRangeRockWallsAndTheToolOnRandomWorlds) {
         const CoarseLevel::Result result = CoarseLevel(site, randomPatch(world), side).sweep(1 + world.below(30));
         ASSERT_EQ(world.field.volume() + result.outflow, before.volume()) << world.text() << ", seed " << seed;
         ASSERT_TRUE(world.rules.rim == sand::Rim::open || result.outflow == 0) << seed;
-        expectWithinLimits(world, before, result.changed, obstacle);
+        coarse::expectWithinLimits(before, world.field,
+                                   {result.changed, world.rules.rim, world.ground.get(), obstacle});
         if (testing::Test::HasFatalFailure()) {
             FAIL() << world.text() << ", seed " << seed << ", coarse cells of " << side;
         }
