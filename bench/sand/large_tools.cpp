@@ -30,8 +30,7 @@ std::string nameOf(const DigLaw& law) {
 }
 
 /// Returns the law of a step with all sweeps and the one that is built. Adds laws with one more level, with a smaller
-/// patch, and without coarse cells. Of a tool whose stroke would take hours with all sweeps, returns the one that is
-/// built.
+/// patch, and without coarse cells. If a stroke would take hours with all sweeps, returns only the law that is built.
 std::vector<DigLaw> lawsOf(const DigCase& given) {
     const sand::SweepPlan plan = given.rules(sand::HeightField(given.place.side, given.place.side, 1.0)).sweepPlan();
     const DigLaw all{"all sweeps", {}, given.allSweeps(), plan.still};

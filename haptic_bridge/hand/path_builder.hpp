@@ -69,8 +69,8 @@ public:
     void restart(sand::ProbePoint probe);
     /// Drops all waiting samples and counts them.
     void dropWaiting();
-    /// Returns the number of samples that were dropped: engaged ones that were thinned out of a step, waiting ones that
-    /// were thinned out, too far ahead, or waiting when dropWaiting() was called.
+    /// Returns the number of samples that were dropped: engaged samples that were thinned out of a step, and waiting
+    /// samples that were thinned out, were too far ahead, or waited when dropWaiting() was called.
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
 private:

@@ -32,7 +32,7 @@ public:
     /// Returns the sweeps of `step`, which is the next of `replica` and has everything except its sweeps; 0 for a TIN.
     [[nodiscard]] std::int32_t sweepsOf(const sand::Step& step, const sand::Replica& replica);
     /// Returns whether the next step of `replica` leaves the hand where it is, because sweeps are owed. In real time a
-    /// hand that hovers goes on meanwhile: it moves no sand.
+    /// hand that hovers does not wait, because it moves no sand.
     [[nodiscard]] bool holdsHand(const sand::Replica& replica) const;
     /// Returns how many sub-steps of the tool the next step of `replica` may have, at least 1. Under the fast pace only
     /// the rules limit them. While sweeps are owed, the step takes only samples that hover.

@@ -87,7 +87,7 @@ bool CoarseLevel::hasCliff(int x, int y) const {
             return !site_.ground->isWall(beside, row) &&
                    std::int64_t{site_.field.height(beside, row)} + site_.rules.tuning.threshold < rock;
         }
-        return site_.rules.rim == Rim::open && site_.rules.tuning.threshold < rock;  // its height beyond is 0
+        return site_.rules.rim == Rim::open && site_.rules.tuning.threshold < rock;  // sand falls to height 0 there
     };
     return rock > lowest_ && (lower(x - 1, y) || lower(x + 1, y) || lower(x, y - 1) || lower(x, y + 1));
 }
@@ -129,7 +129,7 @@ void CoarseLevel::fillObstacle(int column, int row, std::int64_t sand) {
         floorOf(roomOf(cells, below, capOf(column, row)) - sand, std::int64_t{side_} * side_));
 }
 
-/// Returns the sum of highest() over `cells`, of which only those of `below` may be below the tool.
+/// Returns the sum of highest() over `cells`. Only the cells of `below` may be below the tool.
 std::int64_t CoarseLevel::roomOf(const CellRect& cells, const CellRect& below, std::int32_t cap) const {
     const std::int64_t area = std::int64_t{cells.x1 - cells.x0} * (cells.y1 - cells.y0);
     std::int64_t room = (area - std::int64_t{below.x1 - below.x0} * (below.y1 - below.y0)) * cap;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int32_t kFineSweeps = 8;  // after a coarse phase
 constexpr std::int32_t kFirstSide = 4;   // [cell], of the coarsest level of a tool that needs no coarser one
-// Sand stands in the corners of a tool that is not round, and in narrow strips beside it.
+// A tool that is not round piles up sand in its corners and in narrow strips beside it.
 constexpr std::int32_t kFinestSideBesideCorners = 2;  // [cell]
 constexpr std::int32_t kMostCoarseSweeps = 64;  // of the coarsest level, if a coarser one would still resolve the tool
 // Sand would flow through a tool that is narrower than a few coarse cells.

@@ -99,8 +99,8 @@ sand::Tuning measuredAs(sand::Tuning tuning) {
     return tuning;
 }
 
-/// Returns how many times as many cells a tool of `radius` moves on the whole field as the tool that was measured moves
-/// on the part, which may be smaller than what it moves.
+/// Returns a ratio: the cells that a tool of `radius` moves on the whole field, to those that the measured tool moves
+/// on the part.
 double moreOnTheField(const sand::Start& field, std::int32_t radius, const sand::Start& part) {
     // A coarse phase slides sand up to two radii from the tool.
     const std::int64_t radii = part.rules.sweepPlan().hasCoarsePhase() ? 4 : 2;
@@ -159,8 +159,8 @@ std::string StepCost::text(const Scene& scene) const {
 }
 
 std::string longFrameText(const Scene& scene, const std::string& file) {
-    // Of a smaller tool, what is not spread over steps has never taken a tenth of kLongFrame: its movement, and its
-    // coarse phase over some 13 R² cells.
+    // Movement and coarse phase are not spread over steps. With a smaller tool they have never taken a tenth of
+    // kLongFrame.
     constexpr std::int32_t kLarge = 100;  // [cell]
     if (scene.rules.tuning.tool.radius <= kLarge * sand::kProbePerCell || !scene.rules.sweepPlan().hasCoarsePhase()) {
         return {};

@@ -44,8 +44,8 @@ struct LargestTools {
 [[nodiscard]] sand::ProbePoint digPlace(const sand::Rules& rules, std::int64_t step, std::int32_t level);
 
 /// Digs for a short time in the middle of the field, in at most 512 x 512 cells of it, and extrapolates to all sweeps
-/// of a step. Of a tool above 128 cells, digs with one of 128 cells, and extrapolates by the cells that move. Returns
-/// nullopt for a TIN, whose steps are not measured in parts. Needs memory for a replica of these cells.
+/// of a step. If the tool has more than 128 cells, digs with one of 128 cells, and extrapolates by the cells that move.
+/// Returns nullopt for a TIN, whose steps are not measured in parts. Needs memory for a replica of these cells.
 [[nodiscard]] std::optional<StepCost> stepCostOf(const Scene& scene);
 
 /// Returns one line for the user if a step of a height field holds a frame for longer than LargestTools::kLongFrame, or

@@ -185,7 +185,7 @@ scene::Scene rockyScene(double toolCells) {
 /// Rocky sand with every tool.
 void everyTool(const std::filesystem::path& folder, int frames = 200) {
     const scene::Scene scene = rockyScene(6);
-    Written session(scene, false);  // its hand never waits
+    Written session(scene, false);  // the hand never waits
     std::mt19937 random(73);
     for (int frame = 0; frame < frames; ++frame) {
         session.frame(1, [&](std::uint64_t number) { return samples::wildStep(number, scene.rules, random); });

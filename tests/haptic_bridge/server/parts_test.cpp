@@ -112,6 +112,7 @@ TEST_F(Parts, AHandThatHoversGoesOnMeanwhile) {
         const StepMessage waiting = shown(40, true);
         EXPECT_FALSE(waiting.step.engaged);
         EXPECT_TRUE(waiting.step.path.empty()) << "no tool engages while sweeps are owed";
+        EXPECT_EQ(waiting.serverTimeNs, 0) << "a press that waits has no latency yet";
     }
     const StepMessage pressed = shown(40, true);
     EXPECT_TRUE(pressed.step.engaged);

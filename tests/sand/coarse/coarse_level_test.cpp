@@ -98,7 +98,7 @@ TEST(CoarseLevel, LeavesSandAloneThatIsNoSteeperThanTheTalus) {
     }
 }
 
-// The coarse cell at the foot of a cliff would be as high as the mean of sand and rock, and its sand would slide away.
+// The mean of sand and rock would be too high, so that sand at the foot of a cliff would slide away.
 TEST(CoarseLevel, LeavesStableSandAtTheFootOfACliffAlone) {
     for (const sand::Rim rim : {sand::Rim::closed, sand::Rim::open}) {
         for (int edge = 40; edge < 48; ++edge) {
@@ -187,8 +187,7 @@ Obstacle toolWithGap(const CellRect& cells, int gap) {
     return tool;
 }
 
-// A coarse cell is as high as its mean. So a gap between the toes of a footprint would rise like a tower before the
-// mean is as high as the sand beside the foot.
+// A coarse cell is as high as its mean. So sand in a gap between toes could rise far above the sand beside the foot.
 TEST(CoarseLevel, SandInAGapOfTheToolRisesNoHigherThanTheSandAround) {
     constexpr int kGap = 9;
     for (const int side : {2, 4, 8}) {
