@@ -184,8 +184,8 @@ std::optional<LargestTools> largestToolsOf(const Scene& scene) {
         return std::nullopt;
     }
     const std::int64_t began = host::monotonicNs();
-    const bool grid = scene.tin == nullptr;
-    sand::Start part = scene.middle(kMostCells).value_or(scene);
+    const std::optional<sand::Start> middle = scene.middle(kMostCells);
+    sand::Start part = middle.value_or(scene);
     constexpr std::int32_t kLargest = sand::kLargestToolRadius / sand::kProbePerCell;  // [cell]
     const int largest = std::min({scene.rules.columns / 2, scene.rules.rows / 2, kLargest});
     std::vector<std::pair<double, double>> measured;
@@ -193,7 +193,7 @@ std::optional<LargestTools> largestToolsOf(const Scene& scene) {
         Material material = scene.material;
         material.toolRadius = cells * scene.grid().cellSize;
         const sand::Tuning tuning = tuningOf(material, scene.grid());
-        part.rules.tuning = grid ? measuredAs(tuning) : tuning;
+        part.rules.tuning = middle ? measuredAs(tuning) : tuning;
         Digger digger(part);
         (void)digger.digFor(kSecondsEach);
         if (digger.wasRefused()) {
