@@ -59,7 +59,7 @@ TEST_F(Barrier, RefusesEachKindOfGarbageOfTheDrillAndGoesOn) {
     const std::string& first = said()["30:"];
     EXPECT_TRUE(first.starts_with("nonsense of rank 2 (frame 30: rank 2 sent an invalid arrival (of frame ")) << first;
     EXPECT_TRUE(first.ends_with("; arrivals 101 0 103")) << first;
-    expectFrame(31, "nonsense of rank 2 (frame 31: rank 2 sent an invalid arrival (200 bytes instead of 104))",
+    expectFrame(31, "nonsense of rank 2 (frame 31: rank 2 sent an invalid arrival (200 bytes instead of 112))",
                 "101 0 103");
     expectFrame(32, "nonsense of rank 2 (frame 32: rank 2 sent an invalid arrival (longer than 512 bytes))",
                 "101 0 103");
