@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "haptic_bridge/hand/sweep_budget.hpp"
 #include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
@@ -228,10 +229,8 @@ bool Session::showFrame(bool& more) {
 }
 
 std::int32_t Session::sweepsOwed() const {
-    // In real time a hand that hovers does not wait (haptic_bridge::SweepBudget::holdsHand()).
     const sand::Replica& sand = sand_.replica();
-    const bool waits = sand.holdsTool() && (sand.engaged() || options_.pace == haptic_bridge::Pace::fast);
-    return waits ? sand.owed().left() : 0;
+    return haptic_bridge::holdsHand(sand, options_.pace) ? sand.owed().left() : 0;
 }
 
 haptic_bridge::FrameCost Session::cost() const {

@@ -72,7 +72,8 @@ scene::Scene readScene(const lockstep::Cluster& cluster, const std::string& file
     for (const std::string& warning : scene.warnings) {
         host::printLine("{}: warning: {}", file, warning);
     }
-    if (const std::string slow = scene::longFrameText(scene, file); !slow.empty()) {
+    const std::optional<scene::StepCost> cost = scene::costOfALargeTool(scene);
+    if (const std::string slow = cost ? cost->longFrameText(file) : std::string(); !slow.empty()) {
         host::printLine("{}", slow);
     }
     return scene;

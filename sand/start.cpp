@@ -21,10 +21,11 @@ std::int64_t bytesOfCoarsePhase(const Rules& rules) {
         return std::min<std::int64_t>(length, rules.columns) * std::min<std::int64_t>(width, rules.rows);
     };
     const Tool& tool = rules.tuning.tool;
-    const std::int64_t radius = tool.radius / kProbePerCell;
-    const std::int64_t half = isRound(tool.kind) ? radius : std::int64_t{tool.halfWidth} / kProbePerCell;
-    const std::int64_t patch = within(radius * 7 / 2, radius * 7 / 2),
-                       undersides = std::min(within(2 * radius, 2 * half), within(2 * half, 2 * radius));
+    const std::int32_t radius = tool.radius / kProbePerCell;
+    const std::int64_t half = isRound(tool.kind) ? radius : tool.halfWidth / kProbePerCell,
+                       length = 2 * std::int64_t{radius};
+    const std::int64_t patch = within(2 * SweepPlan::reach(radius), 2 * SweepPlan::reach(radius));
+    const std::int64_t undersides = std::min(within(length, 2 * half), within(2 * half, length));
     return kPerGroup * (patch / 16) + static_cast<std::int64_t>(sizeof(std::int32_t)) * undersides;
 }
 

@@ -22,8 +22,8 @@ struct FieldSize {
 
     static FieldSize of(const Rules& rules);
 
-    /// Returns a lower bound of the memory for a replica and its Start [byte]. Returns
-    /// nullopt for a TIN: only its Start gives the number of vertices, but a Start of vertices takes little memory.
+    /// Returns a lower bound of the memory for a replica and its Start [byte]. Returns nullopt for a TIN: only its
+    /// Start gives the number of vertices, but a Start of vertices takes little memory.
     [[nodiscard]] std::optional<std::int64_t> bytesOfReplica() const;
     /// Returns the memory for a height per cell [byte]. A scene is loaded as heights, and a TIN is then made of them.
     [[nodiscard]] std::int64_t bytesOfHeights() const;

@@ -32,9 +32,10 @@ public:
     /// last of its samples was read [ns, the samples' clock]. Returns 0 if the step has no sample that was read.
     /// The path keeps within `limit`.
     ///
-    /// While SweepBudget::holdsHand(), do not call it: the movement waits.
+    /// Do not call it while holdsHand() (sweep_budget.hpp): the movement waits.
     std::int64_t fill(sand::Step& step, const SubstepLimit& limit = {});
-    /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
+    /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]. Returns nullopt if no such
+    /// sample waits.
     [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const { return path_.engagedSinceNs(); }
 
     /// Returns whether samples wait for the next step.

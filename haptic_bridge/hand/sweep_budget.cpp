@@ -87,8 +87,8 @@ double SweepBudget::sweepsIn(double ns, std::int64_t substeps, const sand::Tool&
     return std::min(fit, std::max(fit / growth_, double{kFastPart}));
 }
 
-bool SweepBudget::holdsHand(const sand::Replica& replica) const {
-    return replica.holdsTool() && (pace_ == Pace::fast || replica.engaged());
+bool holdsHand(const sand::Replica& replica, Pace pace) {
+    return replica.holdsTool() && (pace == Pace::fast || replica.engaged());
 }
 
 SubstepLimit SweepBudget::substeps(const sand::Replica& replica) const {

@@ -10,6 +10,10 @@
 
 namespace haptic_bridge {
 
+/// Returns whether the next step of `replica` leaves the hand where it is, because sweeps are owed. In real time a hand
+/// that hovers does not wait, because it moves no sand.
+[[nodiscard]] bool holdsHand(const sand::Replica& replica, Pace pace);
+
 /// Decides how much work of the sand fits into a frame: how many sweeps a step runs, how far it moves the tool, and how
 /// many of the steps that are due a frame takes, at least one. docs/how_it_works.md#a-step has the rules.
 ///
@@ -31,9 +35,9 @@ public:
 
     /// Returns the sweeps of `step`, which is the next of `replica` and has everything except its sweeps; 0 for a TIN.
     [[nodiscard]] std::int32_t sweepsOf(const sand::Step& step, const sand::Replica& replica);
-    /// Returns whether the next step of `replica` leaves the hand where it is, because sweeps are owed. In real time a
-    /// hand that hovers does not wait, because it moves no sand.
-    [[nodiscard]] bool holdsHand(const sand::Replica& replica) const;
+    [[nodiscard]] bool holdsHand(const sand::Replica& replica) const {
+        return haptic_bridge::holdsHand(replica, pace_);
+    }
     /// Returns how many sub-steps of the tool the next step of `replica` may have, at least 1. Under the fast pace only
     /// the rules limit them. While sweeps are owed, the step takes only samples that hover.
     [[nodiscard]] SubstepLimit substeps(const sand::Replica& replica) const;

@@ -67,9 +67,13 @@ std::int32_t CoarseLevel::highest(int x, int y, std::int32_t cap) const {
     return under == Obstacle::kFree ? cap : std::max(std::min(under, cap), site_.field.height(x, y));
 }
 
+bool CoarseLevel::isBelowTool(int column, int row) const {
+    return !obstacle_.cells.clippedTo({column, row, column + 1, row + 1}).empty() &&
+           obstacle_.row(row)[column - obstacle_.cells.x0] != Obstacle::kFree;
+}
+
 std::int32_t CoarseLevel::capOf(int column, int row) const {
-    if (obstacle_.cells.clippedTo({column, row, column + 1, row + 1}).empty() ||
-        obstacle_.row(row)[column - obstacle_.cells.x0] == Obstacle::kFree) {
+    if (!isBelowTool(column, row)) {
         return highest_;
     }
     std::int32_t cap = -kMaxHeight;
@@ -110,8 +114,7 @@ CoarseLevel::Result CoarseLevel::sweep(int sweeps) {
 
 bool CoarseLevel::shareEvenly(int column, int row, std::int64_t each) {
     const Group& group = groupAt(column, row);
-    const bool below = !obstacle_.cells.clippedTo({column, row, column + 1, row + 1}).empty();
-    const bool fits = each > 0 ? !below && group.highest + each <= highest_
+    const bool fits = each > 0 ? !isBelowTool(column, row) && group.highest + each <= highest_
                                : site_.ground == nullptr && group.lowest + each >= lowest_;
     if (fits) {
         add(site_.field, cellsOf(column, row), static_cast<std::int32_t>(each));

@@ -79,6 +79,8 @@ private:
     [[nodiscard]] std::int32_t lowest(int x, int y, std::int32_t least) const;
     /// Returns the highest height to which a cell may go, of a coarse cell with this `cap`.
     [[nodiscard]] std::int32_t highest(int x, int y, std::int32_t cap) const;
+    /// Returns whether some cells of a coarse cell are below the tool.
+    [[nodiscard]] bool isBelowTool(int column, int row) const;
     /// Returns the highest height to which a cell of a coarse cell may go that is not below the tool.
     [[nodiscard]] std::int32_t capOf(int column, int row) const;
     template <class Side>

@@ -264,6 +264,9 @@ std::int32_t Displacement::largestRadius(const HeightField& field, Rim rim, cons
 }
 
 Displacement::Work Displacement::pressAbove(HeightField& field, Rim rim, const Ground* ground, Press at) const {
+    constexpr std::int32_t kAboveAll = kMaxHeight / kUnitsPerProbe + kLargestToolRadius + 1;
+    static_assert((std::int64_t{1} << kMostTrials) >=
+                  std::int64_t{kMaxProbe} + kAboveAll);  // each trial halves the rest
     std::int32_t& z = at.probe.z;
     std::int32_t refused = z, fits = kMaxHeight / kUnitsPerProbe + tool_.radius + 1;  // above all sand it takes nothing
     while (fits - refused > 1) {

@@ -86,9 +86,10 @@ public:
         const auto around = [this](const ProbePoint& at) { return shape_.cellsChanged(at.x, at.y); };
         return around(from).joinedWith(around(to)).clippedTo(field.bounds());
     }
-    /// Returns the distance from the tool's centre up to which a coarse phase slides sand [cell]. With half a radius
-    /// less, several times as much sand of a stroke is in another place (`sandwall-bench large-tools`).
-    [[nodiscard]] int reachOfCoarsePhase() const { return tool_.radius / kProbePerCell * 7 / 4 + shape_.ringCells(); }
+    /// Returns the distance from the tool's centre up to which a coarse phase slides sand [cell].
+    [[nodiscard]] int reachOfCoarsePhase() const {
+        return SweepPlan::reach(tool_.radius / kProbePerCell) + shape_.ringCells();
+    }
     /// Returns the obstacle of a tool whose centre is at `probe`.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint probe) const;
     /// Returns the cells of the field that may be below the tool while its centre is at `probe`.

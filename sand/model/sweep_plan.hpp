@@ -22,6 +22,9 @@ struct SweepPlan {
     std::int32_t coarsest = 0, finest = 0;
     std::int32_t coarsestSweeps = 0;
 
+    /// Returns the distance beyond the ring up to which a coarse phase slides sand, of a tool of `radius` [cell]. With
+    /// half a radius less, several times as much sand of a stroke is in another place (`sandwall-bench large-tools`).
+    [[nodiscard]] static constexpr std::int32_t reach(std::int32_t radius) { return radius * 7 / 4; }
     [[nodiscard]] bool hasCoarsePhase() const { return coarsest > 0; }
     /// Returns the sweeps of the level with this side.
     [[nodiscard]] std::int32_t sweepsOf(std::int32_t side) const {

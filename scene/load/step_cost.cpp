@@ -99,8 +99,8 @@ sand::Tuning measuredAs(sand::Tuning tuning) {
     return tuning;
 }
 
-/// Returns a ratio: the cells that a tool of `radius` moves on the whole field, to those that the measured tool moves
-/// on the part.
+/// Returns by how much more cells move on the whole field, with a tool of `radius`, than on the part, with its own tool
+/// [ratio].
 double moreOnTheField(const sand::Start& field, std::int32_t radius, const sand::Start& part) {
     // A coarse phase slides sand up to two radii from the tool.
     const std::int64_t radii = part.rules.sweepPlan().hasCoarsePhase() ? 4 : 2;
@@ -158,22 +158,23 @@ std::string StepCost::text(const Scene& scene) const {
         shortText(seconds * 1e3), scene.rules.sweepPlan().moved, measured, columns, rows);
 }
 
-std::string longFrameText(const Scene& scene, const std::string& file) {
-    // Movement and coarse phase are not spread over steps. With a smaller tool they have never taken a tenth of
-    // kLongFrame.
-    constexpr std::int32_t kLarge = 100;  // [cell]
-    if (scene.rules.tuning.tool.radius <= kLarge * sand::kProbePerCell || !scene.rules.sweepPlan().hasCoarsePhase()) {
-        return {};
-    }
-    const auto cost = stepCostOf(scene);
-    if (!cost || cost->seconds <= LargestTools::kLongFrame) {
+std::string StepCost::longFrameText(const std::string& file) const {
+    if (seconds <= LargestTools::kLongFrame) {
         return {};
     }
     return fmt::format(
         "{}: a step in which this tool digs takes ≈ {} s on this machine, and holds a frame for as long; "
         "sandwall-check "
         "--scene {} prints up to which radius a step takes at most {:.0f} ms",
-        file, shortText(cost->seconds), file, LargestTools::kLongFrame * 1e3);
+        file, shortText(seconds), file, LargestTools::kLongFrame * 1e3);
+}
+
+std::optional<StepCost> costOfALargeTool(const Scene& scene) {
+    // Movement and coarse phase are not spread over steps. With a smaller tool they have never taken a tenth of
+    // kLongFrame.
+    constexpr std::int32_t kLarge = 100;  // [cell]
+    const bool large = scene.rules.tuning.tool.radius > kLarge * sand::kProbePerCell;
+    return large && scene.rules.sweepPlan().hasCoarsePhase() ? stepCostOf(scene) : std::nullopt;
 }
 
 std::optional<LargestTools> largestToolsOf(const Scene& scene) {
@@ -248,7 +249,7 @@ std::string LargestTools::text(const Scene& scene) const {
         }
         const bool all = cells >= tried;
         return fmt::format("up to a radius of ≈ {} ({} cells{})", shortText(cells * scene.grid().cellSize),
-                           shortText(cells), all ? ", the largest that was measured" : "");
+                           shortText(cells), all ? ", the largest that was tried" : "");
     };
     const std::string except = slower > 0 ? fmt::format(", but not at {:.0f} cells", slower) : "";
     const bool holds = scene.rules.stepLimits().mostSweeps == 0 && fitting < tried;

@@ -20,6 +20,9 @@ struct StepCost {
 
     /// Returns one line for the user. The times have a mark, because they are no promise.
     [[nodiscard]] std::string text(const Scene& scene) const;
+    /// Returns one line for the user if a step holds a frame for longer than LargestTools::kLongFrame, or an empty
+    /// text. `file` names the scene.
+    [[nodiscard]] std::string longFrameText(const std::string& file) const;
 };
 
 /// Largest radii of the scene's tool at which a step of digging is fast enough, of one thread of this machine.
@@ -29,10 +32,11 @@ struct LargestTools {
     /// Largest radius at which a step takes at most half of the time between two steps. The other half is for drawing.
     double following = 0;  // [cell]
     double fitting = 0;    // [cell], largest radius at which a step takes at most kLongFrame
-    /// Largest measured radius below `following` at which a step takes longer than that [cell]; 0 if there is none. A
-    /// tool of 16 cells has no coarse phase, so that its step can take longer than that of a larger tool.
+    /// Largest tried radius below `following` at which a step takes longer than that [cell]. It is 0 if every smaller
+    /// tool is as fast. A tool of 16 cells has no coarse phase, so that its step can take longer than that of a larger
+    /// tool.
     double slower = 0;
-    double tried = 0;  // [cell], largest radius that was measured; the two numbers are not above it
+    double tried = 0;  // [cell], largest radius that was tried; the two numbers are not above it
 
     /// Returns one line for the user.
     [[nodiscard]] std::string text(const Scene& scene) const;
@@ -48,9 +52,8 @@ struct LargestTools {
 /// Returns nullopt for a TIN, whose steps are not measured in parts. Needs memory for a replica of these cells.
 [[nodiscard]] std::optional<StepCost> stepCostOf(const Scene& scene);
 
-/// Returns one line for the user if a step of a height field holds a frame for longer than LargestTools::kLongFrame, or
-/// an empty text. `file` names the scene. Digs as stepCostOf() does if the tool is so large that this is possible.
-[[nodiscard]] std::string longFrameText(const Scene& scene, const std::string& file);
+/// Returns stepCostOf() if the tool is so large that what is not spread over steps may hold a frame; otherwise nullopt.
+[[nodiscard]] std::optional<StepCost> costOfALargeTool(const Scene& scene);
 
 /// Digs as stepCostOf() does, or in a whole TIN, with tools of the scene's kind whose radii double from 4 cells on, and
 /// interpolates between them. Ends at a radius that takes too long, that is half the field, or whose first press does
@@ -58,14 +61,15 @@ struct LargestTools {
 /// replica of the part or of the TIN.
 [[nodiscard]] std::optional<LargestTools> largestToolsOf(const Scene& scene);
 
-/// Returns the largest tools of at least one measured radius and its time of a step.
+/// Returns the largest tools of at least one radius and its time of a step.
 [[nodiscard]] LargestTools largestOf(std::span<const std::pair<double, double>> measured /* [cell], [s] */,
                                      int stepsPerSecond);
 
 /// Returns the largest radius at which a step takes `seconds`, between measured radii. Both grow as powers of each
 /// other between two of them. Returns the largest radius if it takes less, and 0 if all take more.
 [[nodiscard]] double radiusAt(double seconds, std::span<const std::pair<double, double>> measured /* [cell], [s] */);
-/// Returns the largest measured radius below radiusAt() at which a step takes more than `seconds`; 0 if there is none.
+/// Returns the largest measured radius below radiusAt() at which a step takes more than `seconds`. Returns 0 if each of
+/// them takes less.
 [[nodiscard]] double slowerBelow(double seconds, std::span<const std::pair<double, double>> measured);
 
 }  // namespace scene

@@ -41,16 +41,23 @@ TEST(StepCost, IsThatOfAStep) {
     EXPECT_FALSE(scene::stepCostOf(scene).has_value()) << "no tool digs";
 }
 
-TEST(StepCost, OfAToolThatHoldsFramesIsSaidBeforeTheStart) {
+TEST(StepCost, OfAToolThatHoldsFramesIsMeasuredBeforeTheStart) {
     scene::Scene scene = samples::flatScene(2000, 2000, 100);
     scene.rules.tuning.sweepsPerStep = 1667;
     ASSERT_TRUE(scene.rules.sweepPlan().hasCoarsePhase());
-    EXPECT_EQ(scene::longFrameText(scene, "s.toml"), "") << "it is not measured";
+    EXPECT_FALSE(scene::costOfALargeTool(scene).has_value()) << "it is too small to hold a frame";
     scene.rules.tuning.tool.radius *= 9;
-    EXPECT_EQ(scene::longFrameText(scene, "s.toml").find("s.toml: a step in which this tool digs takes ≈ "), 0);
+    EXPECT_TRUE(scene::costOfALargeTool(scene).has_value());
     scene.rules.tuning.sweepsPerStep = 8;
     ASSERT_FALSE(scene.rules.sweepPlan().hasCoarsePhase());
-    EXPECT_EQ(scene::longFrameText(scene, "s.toml"), "") << "all of its work is spread over steps";
+    EXPECT_FALSE(scene::costOfALargeTool(scene).has_value()) << "all of its work is spread over steps";
+}
+
+TEST(StepCost, SaysForHowLongAStepHoldsAFrame) {
+    EXPECT_EQ(scene::StepCost{.seconds = 0.25}.longFrameText("s.toml"), "");
+    EXPECT_EQ(scene::StepCost{.seconds = 1.71}.longFrameText("s.toml"),
+              "s.toml: a step in which this tool digs takes ≈ 1.7 s on this machine, and holds a frame for as long; "
+              "sandwall-check --scene s.toml prints up to which radius a step takes at most 250 ms");
 }
 
 // The radius doubles and the time is 16 times as long, so that the time grows with the fourth power between them.
@@ -118,7 +125,7 @@ TEST(LargestTools, AreSaidInUnitsOfTheSceneAndInCells) {
     EXPECT_EQ((scene::LargestTools{.following = 10, .fitting = 64, .tried = 64}).text(scene),
               "this tool follows the hand up to a radius of ≈ " + cell +
                   " (10 cells); its step takes at most 250 ms up to a radius of ≈ " +
-                  fmt::format("{:.2g}", 64 * scene.terrain.cellSize()) + " (64 cells, the largest that was measured)");
+                  fmt::format("{:.2g}", 64 * scene.terrain.cellSize()) + " (64 cells, the largest that was tried)");
     EXPECT_TRUE((scene::LargestTools{.following = 0, .fitting = 8, .tried = 16})
                     .text(scene)
                     .starts_with("this tool follows the hand at no radius of 4 cells or more; "));

@@ -26,7 +26,7 @@ protected:
     std::int32_t next(bool engaged = false, const sand::Edit& edit = {}) {
         return budget_.sweepsOf({1, sand_->stepNumber() + 1, engaged, {}, edit}, *sand_);
     }
-    /// Shows a frame with such a part, each sweep of which takes `sweepNs`.
+    /// Shows a frame with a part of `sweeps` sweeps. Each sweep takes `sweepNs`.
     void show(std::int64_t sweeps, std::int64_t sweepNs, std::int64_t drawNs = 0) {
         budget_.shown({.sweeps = sweeps, .sweepNs = sweeps * sweepNs, .drawNs = drawNs}, sand_->stepNumber() + 1);
     }
