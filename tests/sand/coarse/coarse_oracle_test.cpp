@@ -3,44 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
 
-#include "sand/grid/coarse_level.hpp"
+#include "tests/sand/coarse/levels.hpp"
 #include "tests/support/sand/oracles.hpp"
 #include "tests/support/sand/relaxing.hpp"
 
 namespace {
 
+using coarse::Levels;
+using coarse::levelsOfTools;
+using coarse::nameOf;
+using coarse::relaxCoarsely;
 using sand::HeightField;
-using sand::grid::CoarseLevel;
-
-using Levels = std::vector<std::pair<int, int>>;  // side [cell] and sweeps
-
-/// Returns the levels of a sphere of 61 cells, of a rectangle as long, and of a sphere of 150 cells.
-std::array<Levels, 3> levelsOfTools() { return {Levels{{4, 39}}, {{4, 39}, {2, 16}}, {{8, 59}, {4, 16}}}; }
-
-std::string nameOf(const Levels& levels) {
-    std::string name;
-    for (const auto& [side, sweeps] : levels) {
-        name += std::to_string(side) + ":" + std::to_string(sweeps) + " ";
-    }
-    return name;
-}
-
-/// Lets sand slide over the coarse levels and then over the field until it rests. Returns the outflow [unit · cell].
-std::int64_t relaxCoarsely(HeightField& field, const sand::Rules& rules, const Levels& levels) {
-    std::int64_t outflow = 0;
-    for (const auto& [side, sweeps] : levels) {
-        outflow += CoarseLevel({field, rules, nullptr, nullptr, {}}, field.bounds(), side).sweep(sweeps).outflow;
-    }
-    samples::relax(field, rules);
-    return outflow;
-}
 
 /// Returns the misplaced share of the pile that a cylinder in the middle of an n x n field becomes.
 double misplacedPile(int n, const oracles::Cylinder& cylinder, const Levels& levels) {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
+#include "tests/support/sand/envelopes.hpp"
 #include "tests/support/sand/oracles.hpp"
 #include "tests/support/sand/reference_sweep.hpp"
 #include "tests/support/sand/relaxing.hpp"
@@ -17,32 +17,10 @@ using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
 
-/// Returns how far a field at rest is outside the envelopes of its start [threshold]. The lower envelope is the minimum
-/// of all slopes at the talus that rise from a cell of the start. The upper envelope is the maximum of all slopes at
-/// the talus that fall from a cell. A negative result is a distance inside.
-double outsideEnvelopes(const HeightField& start, const HeightField& rest) {
-    double outside = -1e300;
-    for (int y = 0; y < rest.rows(); ++y) {
-        for (int x = 0; x < rest.columns(); ++x) {
-            double lower = 1e300;
-            double upper = -1e300;
-            for (int fromY = 0; fromY < start.rows(); ++fromY) {
-                for (int fromX = 0; fromX < start.columns(); ++fromX) {
-                    const double fall = sand::kUnitsPerCell * std::hypot(x - fromX, y - fromY);
-                    lower = std::min(lower, start.height(fromX, fromY) + fall);
-                    upper = std::max(upper, start.height(fromX, fromY) - fall);
-                }
-            }
-            outside = std::max({outside, lower - rest.height(x, y), rest.height(x, y) - upper});
-        }
-    }
-    return outside / sand::kUnitsPerCell;
-}
-
 double outsideAtRest(const HeightField& start, const Law& law) {
     HeightField rest = start;
     samples::relax(rest, samples::rulesFor(rest, law));
-    return outsideEnvelopes(start, rest);
+    return oracles::outsideEnvelopes(start, rest);
 }
 
 /// Returns noise of `range` [threshold], averaged over squares of 2 blur + 1 cells and scaled back to its previous

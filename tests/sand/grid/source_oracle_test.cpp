@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/pour.hpp"
 #include "tests/support/sand/relaxing.hpp"
 
 namespace {
@@ -15,18 +16,6 @@ using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
 using sand::grid::Erosion;
-
-/// Adds `units` of sand to the square of cells within `reach` of (column, row), evenly and exactly.
-void pour(HeightField& field, int column, int row, int reach, std::int64_t units) {
-    std::int64_t cells = (2 * reach + 1) * (2 * reach + 1);
-    for (int y = row - reach; y <= row + reach; ++y) {
-        for (int x = column - reach; x <= column + reach; ++x) {
-            const std::int64_t share = units / cells--;
-            units -= share;
-            field.setHeight(x, y, field.height(x, y) + static_cast<std::int32_t>(share));
-        }
-    }
-}
 
 struct Poured {
     double misplaced, foot;
@@ -43,7 +32,7 @@ Poured pouredCone(int n, int portions, const Law& law) {
     HeightField field(n + 1, n + 1, 1.0);
     Erosion erosion(field, samples::rulesFor(field, law));
     for (int i = 0; i < portions; ++i) {
-        pour(field, middle, middle, reach, portion);
+        samples::pour(field, middle, middle, reach, portion);
         erosion.touch({middle - reach, middle - reach, middle + reach + 1, middle + reach + 1});
         erosion.sweep(field, 1000000);
         EXPECT_TRUE(erosion.settled());

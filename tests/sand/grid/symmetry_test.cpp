@@ -6,6 +6,7 @@
 
 #include "tests/support/sand/relaxing.hpp"
 #include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/turned.hpp"
 
 namespace {
 
@@ -14,21 +15,6 @@ using samples::nameOf;
 using sand::HeightField;
 using sand::Rim;
 using sand::grid::Erosion;
-
-/// Puts a rectangle onto a grid in one of eight ways. Bit 0 mirrors east and west, bit 1 mirrors north and south, and
-/// bit 2 then exchanges columns and rows.
-HeightField turned(const HeightField& field, unsigned way) {
-    const bool transposed = (way & 4) != 0;
-    HeightField result(transposed ? field.rows() : field.columns(), transposed ? field.columns() : field.rows(), 1.0);
-    for (int y = 0; y < field.rows(); ++y) {
-        for (int x = 0; x < field.columns(); ++x) {
-            const int toX = (way & 1) != 0 ? field.columns() - 1 - x : x;
-            const int toY = (way & 2) != 0 ? field.rows() - 1 - y : y;
-            result.setHeight(transposed ? toY : toX, transposed ? toX : toY, field.height(x, y));
-        }
-    }
-    return result;
-}
 
 TEST(Symmetry, SlidingCommutesWithFlipsAndTransposition) {
     std::mt19937 random(11);
@@ -40,11 +26,11 @@ TEST(Symmetry, SlidingCommutesWithFlipsAndTransposition) {
             HeightField field = start;
             const std::int64_t outflow = Erosion(field, rules).sweep(field, 60);
             for (unsigned way = 1; way < 8; ++way) {
-                HeightField image = turned(start, way);
+                HeightField image = samples::turned(start, way);
                 rules = samples::rulesFor(image, law);
                 rules.rim = rim;
                 EXPECT_EQ(Erosion(image, rules).sweep(image, 60), outflow);
-                EXPECT_TRUE(sameHeights(turned(field, way), image)) << nameOf(law) << ", way " << way;
+                EXPECT_TRUE(sameHeights(samples::turned(field, way), image)) << nameOf(law) << ", way " << way;
             }
         }
     }
@@ -55,7 +41,7 @@ TEST(Symmetry, NoTwoWaysAreTheSame) {
     const HeightField field = samples::randomField(6, 6, 1 << 22, random);
     for (unsigned a = 0; a < 8; ++a) {
         for (unsigned b = 0; b < a; ++b) {
-            EXPECT_FALSE(sameHeights(turned(field, a), turned(field, b)));
+            EXPECT_FALSE(sameHeights(samples::turned(field, a), samples::turned(field, b)));
         }
     }
 }
