@@ -50,20 +50,30 @@ def dig(table):
     return figure
 
 
+LAW_MARKERS = {"as it is built": "o", "one more level": "^", "near": "v", "capped": "X"}  # of large-tools
+
+
+def kind_of_law(law, as_built):
+    """Returns how a law of large-tools differs from the one that is built."""
+    return "as it is built" if law == as_built else "near" if law.endswith(" near") else law if law == "capped" else "one more level"
+
+
 def large_tools(table):
     figure, axes = panels(2)
     spheres = table.where(place="level", tool="sphere")
-    for (size, radius), colour, marker in zip(tools_with_laws(spheres), SERIES, MARKERS):
-        rows = [row for row in spheres if (row["N"], row["R"]) == (size, radius) and row["law"] != "all sweeps"]
-        for row in rows:
-            axes[0].plot(row["ms_p50"], row["behind"], color=colour, marker=marker, linestyle="none",
-                         label=f"R = {radius:g}, N = {size}" if row is rows[0] else None)
-            axes[0].annotate(row["law"], (row["ms_p50"], row["behind"]), fontsize=6, textcoords="offset points", xytext=(4, 3))
-    label(axes[0], "time per step, median [ms]", "sand in another place than with all sweeps [%]", "labels: coarse levels and their sweeps")
+    as_built = {(row["N"], row["R"]): row["law"] for row in built(spheres)}
+    for (size, radius), colour in zip(tools_with_laws(spheres), SERIES):
+        axes[0].plot([], [], color=colour, marker="s", linestyle="none", label=f"R = {radius:g}, N = {size}")
+        for row in table.where(place="level", tool="sphere", N=size, R=radius):
+            if row["law"] != "all sweeps":
+                axes[0].plot(row["ms_p50"], row["behind"], color=colour, linestyle="none", marker=LAW_MARKERS[kind_of_law(row["law"], as_built[size, radius])])
+    for kind, marker in LAW_MARKERS.items():
+        axes[0].plot([], [], color="#777777", marker=marker, linestyle="none", label=kind)
+    label(axes[0], "time per step, median [ms]", "sand in another place than with all sweeps [%]", "error against time, spheres on level sand")
     for law, rows, colour, marker in (("all sweeps", [row for row in spheres if row["law"] == "all sweeps"], SERIES[1], MARKERS[1]),
-                                      ("as it is built", built(spheres), SERIES[0], MARKERS[0])):
+                                      ("with coarse levels", built(spheres), SERIES[0], MARKERS[0])):
         axes[1].plot([row["R"] for row in rows], [row["ms_p50"] for row in rows], color=colour, marker=marker, linestyle="none", label=law)
-    label(axes[1], "radius of the tool [cells]", "time per step, median [ms]", "spheres on level sand")
+    label(axes[1], "radius of the tool [cells]", "time per step, median [ms]", "cost, spheres on level sand")
     sizes_on(axes[1], sorted({row["R"] for row in spheres}))
     for axis in axes:
         percents(axis)

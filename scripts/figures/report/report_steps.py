@@ -75,10 +75,10 @@ def large_tools(tables):
             "- *all*: time of a step with all sweeps; *p50*, *p99*: as it is built; *ratio*: p50 divided by *all*.\n"
             "- *behind*, *at the end*: sand in another place than with all sweeps, at the end of the stroke and at rest.\n"
             "- *highest*: highest sand at the end of the stroke, divided by that with all sweeps.\n"
-            "- *to rest*: steps and CPU time after lifting.\n\n"
+            "- *to rest*: steps and CPU time after lifting; 4000 steps are the most that are measured.\n\n"
             f"The time of a step grows with R^{exponent:.2g} from R = {first['R']:g} to {last['R']:g}. At most "
             f"{max(row['behind'] for row in compared):.2g} % of the sand is in another place behind the hand, and "
-            f"{max(row['at_end'] for row in compared):.2g} % at rest. In the figure, *near* has a patch that is half a radius smaller on "
+            f"{max(row['at_end'] for row in compared):.2g} % at rest. In the figure, *one more level* has finer coarse cells too, *near* has a patch that is half a radius smaller on "
             "each side, and *capped* as many sweeps as a step without a movement, and no coarse cells.\n\n" +
             markdown(["place", "tool", "N", "R [cells]", "law", "all [ms]", "p50 [ms]", "p99 [ms]", "ratio", "behind", "at the end",
                       "highest", "steps to rest", "to rest [s]"], lines))
