@@ -37,6 +37,15 @@ public:
         put(static_cast<std::uint32_t>(bytes.size()));
         putBytes(bytes);
     }
+    /// Begins a block whose length endBlock() writes. Returns its place. All bytes up to endBlock() belong to it.
+    [[nodiscard]] std::size_t beginBlock() {
+        put(std::uint32_t{0});
+        return bytes_.size();
+    }
+    void endBlock(std::size_t place) {
+        const auto length = static_cast<std::uint32_t>(bytes_.size() - place);
+        std::memcpy(bytes_.data() + place - sizeof length, &length, sizeof length);
+    }
     void putText(std::string_view text) { putBlock({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); }
     /// Appends a number with 7 bits in each byte, lowest bits first. Small numbers take few bytes.
     void putVarint(std::uint64_t value) {

@@ -48,7 +48,9 @@ auto decoded(const JournalReader& reader, Decode decode) {
 
 }  // namespace
 
-scene::Scene sceneOf(const JournalReader& reader) { return decoded(reader, scene::Scene::decode); }
+scene::Scene sceneOf(const JournalReader& reader) {
+    return decoded(reader, [](std::span<const std::uint8_t> bytes) { return scene::Scene::decode(bytes); });
+}
 
 sand::Rules rulesOf(const JournalReader& reader) { return decoded(reader, scene::Scene::decodeRules); }
 

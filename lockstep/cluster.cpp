@@ -174,12 +174,13 @@ void Cluster::await(std::span<MPI_Request> requests, std::span<const int> ranks)
 base::Bytes Cluster::broadcast(const base::Bytes& fromMaster) const {
     auto size = static_cast<std::uint64_t>(fromMaster.size());
     MPI_Bcast(&size, 1, MPI_UINT64_T, kMaster, frames_);
-    base::Bytes bytes = fromMaster;
-    bytes.resize(size);
+    base::Bytes got(isMaster() ? 0 : size);
+    // One pointer serves both directions; the master only reads from it.
+    std::uint8_t* const data = isMaster() ? const_cast<std::uint8_t*>(fromMaster.data()) : got.data();
     for (std::uint64_t done = 0; done < size; done += kMpiPiece) {
-        MPI_Bcast(bytes.data() + done, static_cast<int>(std::min(kMpiPiece, size - done)), MPI_BYTE, kMaster, frames_);
+        MPI_Bcast(data + done, static_cast<int>(std::min(kMpiPiece, size - done)), MPI_BYTE, kMaster, frames_);
     }
-    return bytes;
+    return got;
 }
 
 /// The master receives from each rank by itself. Inside MPI_Gather it could not know which rank is missing.

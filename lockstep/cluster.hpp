@@ -55,7 +55,8 @@ public:
     /// Returns the bells of this host's ranks. The sender of a message rings the receiver's bell after the message.
     [[nodiscard]] const HostBells& bells() const { return *bells_; }
 
-    /// Returns the master's argument `fromMaster` on all ranks. Collective.
+    /// Returns the master's argument `fromMaster` on the render ranks, and no bytes at the master, which has them.
+    /// Collective.
     [[nodiscard]] base::Bytes broadcast(const base::Bytes& fromMaster) const;
     /// Returns the bytes `mine` of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
     [[nodiscard]] std::vector<base::Bytes> gather(const base::Bytes& mine) const;

@@ -39,7 +39,8 @@ struct SessionMessage {
     }
 };
 
-/// Returns the master's argument `fromMaster` on all ranks. With nullopt the master refuses the session. Collective.
+/// Returns the master's argument `fromMaster` on the render ranks, and nullopt at the master. With nullopt the master
+/// refuses the session. Collective.
 [[nodiscard]] std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
                                                              const std::optional<SessionMessage>& fromMaster);
 

@@ -56,7 +56,7 @@ public:
             const GlProgram broken(shaderSource("solid.vert.glsl"), shaderSource("light.glsl"),
                                    {"sand.frag.glsl", "spoilt on purpose"});
         }
-        const scene::Scene scene = scene::Scene::decode(message.scene);
+        const scene::Scene scene = scene::Scene::decode(message.scene, scene::Scene::Keep::packedToo);
         replica_.emplace(scene, executor);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
                          lockstep::hostName(), replica_->surface().data());
@@ -284,7 +284,7 @@ private:
 }  // namespace
 
 int showTile(const lockstep::Cluster& cluster, Backend backend, const base::Executor* executor) {
-    const std::optional<lockstep::SessionMessage> message = lockstep::broadcastSession(cluster, std::nullopt);
+    std::optional<lockstep::SessionMessage> message = lockstep::broadcastSession(cluster, std::nullopt);
     if (!message) {
         return 0;  // the master has printed the reason
     }
@@ -293,6 +293,8 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const base::Exec
     try {
         lockstep::requireStartUpLimit();
         session = std::make_unique<TileSession>(cluster, *message, backend, executor);
+        message->scene = base::Bytes();  // the session has the sand in its replica
+        message->state = base::Bytes();
         readiness.tile = session->tile();
         readiness.otherFloats = session->otherFloats();
         readiness.renderer = session->context().renderer();

@@ -340,12 +340,12 @@ StateCopy Replica::copyState() const {
     return {base::encoded(head()), movement.take(), surface_->kept(), copySand()};
 }
 
-base::Bytes StateCopy::encode() const {
+base::Bytes StateCopy::encode(const std::function<void()>& between) const {
     base::ByteWriter writer;
     writer.putBytes(head);
     writer.putBlock(movement);
-    writer.putBlock(beforeStroke ? beforeStroke->encode() : base::Bytes());
-    writer.putBytes(sand->encode());
+    writer.putBlock(beforeStroke ? beforeStroke->encode(between) : base::Bytes());
+    writer.putBytes(sand->encode(between));
     return writer.take();
 }
 

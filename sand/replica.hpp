@@ -57,8 +57,8 @@ struct StateCopy {
     std::shared_ptr<const SurfaceCopy> beforeStroke;  // sand that an undo restores; null if there is none
     std::shared_ptr<const SurfaceCopy> sand;
 
-    /// Returns the state as compressed bytes for Replica::decodeState().
-    [[nodiscard]] base::Bytes encode() const;
+    /// Returns the state as compressed bytes for Replica::decodeState(). Calls `between` as SurfaceCopy::encode() does.
+    [[nodiscard]] base::Bytes encode(const std::function<void()>& between = {}) const;
 };
 
 /// One program's copy of the sand, and apply(), the function through which each step changes it.

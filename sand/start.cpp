@@ -2,6 +2,7 @@
 #include "sand/start.hpp"
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -37,7 +38,7 @@ std::optional<std::int64_t> FieldSize::bytesOfReplica() const {
     if (nominal) {
         return std::nullopt;
     }
-    // The height in the Start, the height in the replica, and the fluxes through two faces of the cell.
+    // When all sand moves: the height, the fluxes through two faces of the cell, and the height before the stroke.
     constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
     return kPerCell * columns * rows;
 }
@@ -54,10 +55,15 @@ void Start::beginAs(tin::TinStart start) {
     tin = std::make_shared<const tin::TinStart>(std::move(start));
     rules.tin = tin->digest();
     terrain = HeightField(1, 1, terrain.cellSize());
+    packed = nullptr;
+}
+
+void Start::pack(const std::function<void()>& between) {
+    packed = packedCells(terrain.cells(), terrain.bounds(), between);
 }
 
 void Start::encodeSand(base::ByteWriter& writer) const {
-    encodeCells(terrain.cells(), terrain.bounds(), writer);
+    encodePacked(packed != nullptr ? *packed : *packedCells(terrain.cells(), terrain.bounds()), writer);
     if (tin != nullptr) {
         tin->encode(writer);
     }
@@ -66,12 +72,15 @@ void Start::encodeSand(base::ByteWriter& writer) const {
     }
 }
 
-void Start::decodeSand(base::ByteReader& reader, double cellSize) {
+void Start::decodeSand(base::ByteReader& reader, double cellSize, Keep keep) {
     const bool grid = rules.tin == 0;
     const int columns = grid ? rules.columns : 1, rows = grid ? rules.rows : 1;
     requireCells(reader, static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     terrain = HeightField(columns, rows, cellSize);
+    const std::span<const std::uint8_t> before = reader.rest();
     decodeCells(reader, terrain.bounds(), kMaxHeight, terrain.cells());
+    const auto cells = before.first(before.size() - reader.rest().size());
+    packed = keep == Keep::packedToo ? std::make_shared<const base::Bytes>(cells.begin(), cells.end()) : nullptr;
     if (!grid) {
         tin = std::make_shared<const tin::TinStart>(tin::TinStart::decode(reader));
         if (tin->digest() != rules.tin || rules.ground != 0) {
@@ -83,6 +92,13 @@ void Start::decodeSand(base::ByteReader& reader, double cellSize) {
         if (ground->digest() != rules.ground) {
             throw base::FormatError("a scene whose ground is not that of its rules");
         }
+    }
+}
+
+void Start::dropHeights() {
+    if (tin == nullptr) {
+        terrain = HeightField(1, 1, terrain.cellSize());
+        packed = nullptr;
     }
 }
 
@@ -122,6 +138,9 @@ std::int32_t Start::referenceHeight() const {
     if (tin != nullptr) {
         return tin->meanHeight;
     }
+    if (terrain.columns() != rules.columns || terrain.rows() != rules.rows) {
+        throw std::logic_error("Start::referenceHeight: the heights are gone");
+    }
     const std::int64_t cells = std::int64_t{terrain.columns()} * terrain.rows();
     return static_cast<std::int32_t>(terrain.volume() / cells);
 }
@@ -139,6 +158,21 @@ std::int64_t Start::leastBytes() const {
 std::int64_t Start::bytesToDraw() const {
     // A TIN is drawn with a height for each nominal cell, from which follows how much sky each place sees.
     return tin != nullptr ? std::int64_t{sizeof(float)} * rules.columns * rules.rows : 0;
+}
+
+std::optional<std::int64_t> Start::volumeOfHeights() const {
+    return tin != nullptr ? std::nullopt : std::optional(terrain.volume());
+}
+
+std::size_t Start::mostStateBytes() const {
+    if (tin != nullptr) {
+        return 0;
+    }
+    // Heights and two fluxes, now and before the stroke. Numbers that cannot be compressed take a little more than
+    // their four bytes. A tile of 64 x 64 cells has a few bytes of movement.
+    constexpr std::size_t kPerCell = 6 * sizeof(std::int32_t) + 1, kMost = (std::size_t{1} << 32) - (1 << 16);
+    const auto cells = (static_cast<std::size_t>(rules.columns) + 2) * (static_cast<std::size_t>(rules.rows) + 2);
+    return std::min(kPerCell * cells + (1 << 20), kMost);
 }
 
 SizeText Start::sizeText() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,6 +48,9 @@ struct Start {
     HeightField terrain{1, 1, 1.0};            // for a TIN one cell, which gives the nominal cell size
     std::shared_ptr<const tin::TinStart> tin;  // null for a height field
     std::shared_ptr<const Ground> ground;      // null without rock and wall cells
+    /// `terrain` as encodeCells() writes it. Encoding and all replicas of this Start share these bytes. Null unless
+    /// pack() or decodeSand() has set it. `terrain` must not change while it is set.
+    std::shared_ptr<const base::Bytes> packed;
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.tuning.tool.radius * terrain.cellSize() / kProbePerCell;
@@ -56,11 +60,18 @@ struct Start {
     /// Makes the TIN `start` the sand that a replica begins with. Sets `tin`, `terrain` and `rules.tin`; keeps the cell
     /// size.
     void beginAs(tin::TinStart start);
+    /// Sets `packed`. Calls `between` as encodeCells() does.
+    void pack(const std::function<void()>& between = {});
     /// Writes heights, TIN and ground. The rules and the cell size are written elsewhere.
     void encodeSand(base::ByteWriter& writer) const;
-    /// Reads what encodeSand() wrote. `rules` must have been read. Throws base::FormatError for bytes that are not the
-    /// sand of these rules.
-    void decodeSand(base::ByteReader& reader, double cellSize /* [scene unit] */);
+    enum class Keep : bool { heights, packedToo };
+    /// Reads what encodeSand() wrote, and sets `packed` if `keep` says so. `rules` must have been read. Throws
+    /// base::FormatError for bytes that are not the sand of these rules.
+    void decodeSand(base::ByteReader& reader, double cellSize /* [scene unit] */, Keep keep);
+
+    /// Frees the heights, because all replicas have been made. Only rules, cell size, TIN and ground stay. For a TIN,
+    /// changes nothing.
+    void dropHeights();
 
     /// Returns the heights that the sand begins with. Throws std::logic_error for a TIN, which gets its triangles from
     /// a replica.
@@ -68,13 +79,18 @@ struct Start {
     /// Returns the middle of a height field with its rock and walls, at most `most` cells along a side; nullopt for a
     /// TIN.
     [[nodiscard]] std::optional<Start> middle(int most) const;
-    /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
+    /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it. Throws
+    /// std::logic_error after dropHeights().
     [[nodiscard]] std::int32_t referenceHeight() const;
 
     /// Returns a lower bound of the memory for a replica and this Start [byte].
     [[nodiscard]] std::int64_t leastBytes() const;
     /// Returns a lower bound of the further memory that a program needs to draw the sand [byte].
     [[nodiscard]] std::int64_t bytesToDraw() const;
+    /// Returns the volume of the heights [unit · cell]; nullopt for a TIN, whose volume takes seconds (volumeOf()).
+    [[nodiscard]] std::optional<std::int64_t> volumeOfHeights() const;
+    /// Returns an upper bound of Replica::encodeState() for a height field, at most 2^32 - 2^16 [byte]; 0 for a TIN.
+    [[nodiscard]] std::size_t mostStateBytes() const;
     [[nodiscard]] SizeText sizeText() const;
 };
 

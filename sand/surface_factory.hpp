@@ -18,10 +18,13 @@ namespace sand {
 /// Returns the exact volume of the sand that `start` begins with, in the unit of Replica::volume(). Triangulates a TIN.
 [[nodiscard]] std::int64_t volumeOf(const Start& start);
 
+/// Time at which startHeights() unpacks a height field. At the first use, it takes no further memory until then, if
+/// Start::packed is set; a single thread may call the function.
+enum class Heights : bool { now, atFirstUse };
 /// Returns the height of the sand that `start` begins with, at each place. It is continuous: a height field is
-/// interpolated between its cells. Outside the field, it is the height of the nearest place in it. `start` must outlive
-/// the function.
-[[nodiscard]] HeightAt startHeights(const Start& start);
+/// interpolated between its cells. Outside the field, it is the height of the nearest place in it. The function keeps
+/// these heights, also after Start::dropHeights().
+[[nodiscard]] HeightAt startHeights(const Start& start, Heights when = Heights::now);
 
 /// Makes `start` begin with the current sand of `surface`, which makeSurface() made from `start`.
 void startFrom(const Surface& surface, Start& start);

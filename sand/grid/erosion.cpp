@@ -72,6 +72,7 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
       down_((field.rows() + blockSize_ - 1) / blockSize_),
       east_(field.columns(), field.rows()),
       north_(field.columns(), field.rows()),
+      written_(static_cast<std::size_t>(down_), Written::no),
       marked_(across_, down_),
       moved_(across_, down_),
       flowed_(across_, down_) {
@@ -97,6 +98,7 @@ Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const O
         if (willChange) {
             std::for_each(swept_.begin(), swept_.end(), willChange);
         }
+        noteWritten();
         outflow += sweepOnce(field, momentum, obstacle);
         markAroundMoved();
         ++sweepsDone_;
@@ -109,6 +111,7 @@ Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const O
             wakeAll();
         }
     }
+    releaseRest();
     // If no block is active, the next sweep would move no sand. A replica that was healed visits all blocks to find
     // that.
     return {outflow, settled()};
@@ -179,12 +182,10 @@ Inertia Erosion::inertia() const {
 }
 
 void Erosion::resume(const Inertia& inertia) {
-    // Only active blocks hold fluxes, but clearing whole rows is as fast.
     for (CellArray* flux : {&east_, &north_}) {
-        for (int y = -1; y < flux->rows(); ++y) {
-            std::fill(flux->row(y) - 1, flux->row(y) + flux->columns(), 0);
-        }
+        *flux = CellArray(flux->columns(), flux->rows());
     }
+    std::fill(written_.begin(), written_.end(), Written::no);
     inertia.putInto(east_, north_);
     undisturbed_ = inertia.undisturbed();
     // A sweep in which an executor threw has left numbers there.

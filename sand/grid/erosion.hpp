@@ -115,6 +115,10 @@ private:
     void markAroundMoved();
     /// Adds the marked blocks to the active ones.
     void wakeTouched();
+    /// Notes that fluxes of the active blocks may be written.
+    void noteWritten();
+    /// Gives the memory of fluxes back to the system where sand has rested for a while.
+    void releaseRest();
 
     Rules rules_;
     Options options_;
@@ -123,6 +127,9 @@ private:
     // Fluxes of the last sweep from each cell to the east and to the north [unit]. Column -1 and row -1 are the fluxes
     // across the western and the southern rim. All fluxes of a block that is not active are 0.
     CellArray east_, north_;
+    enum class Written : std::uint8_t { no, earlier, lately };
+    std::vector<Written> written_;  // by row of blocks: whether its fluxes take memory, and since when
+    int calls_ = 0;                 // of sweep() since releaseRest() has last looked at written_
     std::int64_t sweepsDone_ = 0;
     int undisturbed_ = 0;  // age of the inertia [sweep]
     // Runs of blocks within one row of blocks, row by row from the south-west [block]. Runs of a row do not touch.

@@ -64,6 +64,36 @@ void Erosion::markAroundMoved() {
     }
 }
 
+void Erosion::noteWritten() {
+    for (const CellRect& run : active_) {
+        written_[static_cast<std::size_t>(run.y0)] = Written::lately;
+    }
+}
+
+void Erosion::releaseRest() {
+    constexpr int kCalls = 64;  // rows that are dug again and again keep their memory
+    if (++calls_ < kCalls) {
+        return;
+    }
+    calls_ = 0;
+    noteWritten();  // active blocks may have fluxes although no sweep was due
+    for (int y = 0; y < down_;) {
+        Written& row = written_[static_cast<std::size_t>(y)];
+        const int first = y++;
+        if (row != Written::earlier) {
+            row = row == Written::lately ? Written::earlier : Written::no;
+            continue;
+        }
+        row = Written::no;
+        for (; y < down_ && written_[static_cast<std::size_t>(y)] == Written::earlier; ++y) {
+            written_[static_cast<std::size_t>(y)] = Written::no;
+        }
+        const int end = std::min(y * blockSize_, east_.rows());
+        east_.releaseRows(first * blockSize_, end);
+        north_.releaseRows(first * blockSize_, end);
+    }
+}
+
 std::vector<CellRect> Erosion::takeMoved() {
     std::vector<CellRect> runs = moved_.takeRuns();
     std::transform(runs.begin(), runs.end(), runs.begin(), [this](const CellRect& run) { return cellsOf(run); });

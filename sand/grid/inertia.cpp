@@ -88,14 +88,14 @@ void Inertia::putInto(CellArray& east, CellArray& north) const {
     }
 }
 
-void Inertia::encode(int columns, int rows, base::ByteWriter& writer) const {
+void Inertia::encode(int columns, int rows, base::ByteWriter& writer, const std::function<void()>& between) const {
     base::putMember(writer, Head{undisturbed_, !pieces_.empty()});
     if (!pieces_.empty()) {
         CellArray east(columns, rows);
         CellArray north(columns, rows);
         putInto(east, north);
-        encodeCells(east, withRim(columns, rows), writer);
-        encodeCells(north, withRim(columns, rows), writer);
+        encodeCells(east, withRim(columns, rows), writer, between);
+        encodeCells(north, withRim(columns, rows), writer, between);
     }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/byte_stream.hpp"
@@ -40,7 +41,8 @@ public:
     [[nodiscard]] int undisturbed() const { return undisturbed_; }  // age of the inertia [sweep]
 
     /// Writes the fluxes as two whole grids of a field of this size. The division into pieces makes no difference.
-    void encode(int columns, int rows, base::ByteWriter& writer) const;
+    /// Calls `between` as encodeCells() does.
+    void encode(int columns, int rows, base::ByteWriter& writer, const std::function<void()>& between = {}) const;
     /// Reads what encode() wrote. Throws base::FormatError for invalid bytes, and for a flux that no sweep of these
     /// faces makes. A sweep takes the fluxes of closed rims from memory, where they are 0, and never computes them.
     /// Another number would change the volume in each sweep.

@@ -33,11 +33,11 @@ void requireAbove(const Ground& ground, const HeightField& field) {
 
 }  // namespace
 
-base::Bytes Snapshot::encode() const {
+base::Bytes Snapshot::encode(const std::function<void()>& between) const {
     base::ByteWriter writer;
     writer.put(outflow);
-    encodeCells(field.cells(), field.bounds(), writer);
-    inertia.encode(field.columns(), field.rows(), writer);
+    encodeCells(field.cells(), field.bounds(), writer, between);
+    inertia.encode(field.columns(), field.rows(), writer, between);
     return writer.take();
 }
 

@@ -25,7 +25,8 @@ public:
     Snapshot(HeightField heights, Inertia fluxes, std::int64_t over)
         : field(std::move(heights)), inertia(std::move(fluxes)), outflow(over) {}
 
-    [[nodiscard]] base::Bytes encode() const override;
+    using SurfaceCopy::encode;
+    [[nodiscard]] base::Bytes encode(const std::function<void()>& between) const override;
     /// Reads what encode() wrote for a field with these limits. Throws base::FormatError for invalid bytes, for sand
     /// below rock, for fluxes that Inertia::decode() refuses, and if further bytes follow. Volume and outflow together
     /// must be within ±kMaxHeight times the number of cells; steps keep that sum.

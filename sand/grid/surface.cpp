@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <span>
+#include <utility>
 
 #include "sand/grid/coarse_level.hpp"
 #include "sand/grid/settle.hpp"
@@ -25,16 +26,14 @@ Erosion::Options withGround(Erosion::Options options, const Ground* ground) {
 }  // namespace
 
 GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
-                         const Erosion::Options& options)
+                         const Erosion::Options& options, std::shared_ptr<const base::Bytes> start)
     : rules_(rules),
       ground_(std::move(ground)),
       field_(field),
       how_(options),
       erosion_(field_, rules_, withGround(options, ground_.get())),
-      hash_(field_) {
-    base::ByteWriter writer;
-    encodeCells(field_.cells(), field_.bounds(), writer);
-    start_ = std::make_shared<const base::Bytes>(writer.take());
+      hash_(field_),
+      start_(start != nullptr ? std::move(start) : packedCells(field_.cells(), field_.bounds())) {
     movement_.moved.assign(static_cast<std::size_t>(hash_.tileCount()), 0);
 }
 

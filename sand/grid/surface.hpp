@@ -18,9 +18,9 @@ namespace sand::grid {
 class GridSurface final : public Surface {
 public:
     /// `options` choose how the sand is swept; they never change the result. `ground` replaces `options.ground`, and is
-    /// null without rock and wall cells.
+    /// null without rock and wall cells. `start` is Start::packed; if it is null, the surface compresses `field`.
     GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
-                const Erosion::Options& options);
+                const Erosion::Options& options, std::shared_ptr<const base::Bytes> start = nullptr);
     [[nodiscard]] std::unique_ptr<Surface> clone() const override;
 
     [[nodiscard]] const Erosion& erosion() const { return erosion_; }

@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
-#include <vector>
+
+#include "base/zeroed_memory.hpp"
 
 namespace sand {
 
@@ -31,29 +32,38 @@ struct CellRect {
 
 /// Array of one 32-bit number per cell. Ghost cells surround it: rows -1 and `rows`, columns -1 and `columns`.
 ///
-/// Cell (0,0) is the south-west corner; columns run east and rows run north. All numbers are 0 at first. Not
-/// thread-safe.
+/// Cell (0,0) is the south-west corner; columns run east and rows run north. All numbers are 0 at first. A large array
+/// takes memory only for pages that were written. Not thread-safe.
 class CellArray {
 public:
     CellArray(int columns, int rows)
         : columns_(columns),
           rows_(rows),
-          cells_(static_cast<std::size_t>(stride()) * (static_cast<std::size_t>(rows) + 2)) {}
+          cells_(static_cast<std::size_t>(stride()) * (static_cast<std::size_t>(rows) + 2) * sizeof(std::int32_t)) {}
 
     [[nodiscard]] int columns() const { return columns_; }
     [[nodiscard]] int rows() const { return rows_; }
     [[nodiscard]] CellRect bounds() const { return {0, 0, columns_, rows_}; }
 
     /// Returns a pointer to cell 0 of `row`, which is in [-1, rows()]. Cells -1 and columns() are ghost cells.
-    [[nodiscard]] const std::int32_t* row(int row) const { return cells_.data() + offset(row); }
-    [[nodiscard]] std::int32_t* row(int row) { return cells_.data() + offset(row); }
+    [[nodiscard]] const std::int32_t* row(int row) const { return numbers(cells_.data()) + offset(row); }
+    [[nodiscard]] std::int32_t* row(int row) { return numbers(cells_.data()) + offset(row); }
 
     /// Returns the distance from one row to the next [cell]. Code that reads a row by vectors may read kPadding cells
     /// beyond either end.
     [[nodiscard]] std::ptrdiff_t stride() const {
         return 2 * kPadding + (columns_ + kPadding - 1) / kPadding * kPadding;
     }
-    [[nodiscard]] std::size_t bytes() const { return cells_.size() * sizeof cells_[0]; }
+    [[nodiscard]] std::size_t bytes() const { return cells_.size(); }
+
+    /// Gives memory of the rows [first, end) back to the system, with their ghost cells. All their numbers must be 0,
+    /// and stay so.
+    void releaseRows(int first, int end) {
+        const auto place = [this](int row) {
+            return static_cast<std::size_t>(offset(row) - kPadding) * sizeof(std::int32_t);
+        };
+        cells_.release(place(first), place(end));
+    }
 
 private:
     // A row has three parts: a vector of padding, the cells rounded up to whole vectors, and another vector of padding.
@@ -61,11 +71,13 @@ private:
     // lies in the second padding if the cells fill whole vectors.
     static constexpr int kPadding = 16;  // [cell], one cache line
 
+    static const std::int32_t* numbers(const std::byte* bytes) { return reinterpret_cast<const std::int32_t*>(bytes); }
+    static std::int32_t* numbers(std::byte* bytes) { return reinterpret_cast<std::int32_t*>(bytes); }
     [[nodiscard]] std::ptrdiff_t offset(int row) const { return (row + std::ptrdiff_t{1}) * stride() + kPadding; }
 
     int columns_;
     int rows_;
-    std::vector<std::int32_t> cells_;
+    base::ZeroedMemory cells_;
 };
 
 }  // namespace sand

@@ -4,31 +4,110 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <memory>
+#include <new>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace sand {
 namespace {
+
+// [number], most in a frame of zstd unless a row has more. A field is compressed without a copy of all its numbers.
+constexpr std::size_t kStripe = std::size_t{1} << 20;
+constexpr int kMostWindow = 23;  // log2 of the memory that a frame may need to be unpacked [byte]
 
 std::size_t countOf(const CellRect& cells) {
     return static_cast<std::size_t>(cells.x1 - cells.x0) * static_cast<std::size_t>(cells.y1 - cells.y0);
 }
 
-}  // namespace
-
-void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer) {
-    std::vector<std::int32_t> plain;
-    plain.reserve(countOf(cells));
-    for (int y = cells.y0; y < cells.y1; ++y) {
-        plain.insert(plain.end(), grid.row(y) + cells.x0, grid.row(y) + cells.x1);
-    }
+/// Appends a frame with the numbers of `plain`.
+void appendFrame(const std::vector<std::int32_t>& plain, base::Bytes& packed, base::ByteWriter& writer) {
     const std::size_t size = plain.size() * sizeof plain[0];
-    base::Bytes packed(ZSTD_compressBound(size));
+    packed.resize(ZSTD_compressBound(size));
     const std::size_t used = ZSTD_compress(packed.data(), packed.size(), plain.data(), size, 1);
     if (ZSTD_isError(used) != 0) {
         throw base::FormatError(std::string("zstd: ") + ZSTD_getErrorName(used));
     }
-    packed.resize(used);
-    writer.putBlock(packed);
+    writer.putBytes(std::span(packed).first(used));
+}
+
+/// Unpacks frames of zstd, one after the other.
+class Unpacker {
+public:
+    explicit Unpacker(std::span<const std::uint8_t> packed)
+        : context_(ZSTD_createDCtx(), ZSTD_freeDCtx), in_{packed.data(), packed.size(), 0} {
+        if (context_ == nullptr) {
+            throw std::bad_alloc();
+        }
+        (void)ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, kMostWindow);
+    }
+
+    /// Reads the next `count` numbers.
+    void read(std::int32_t* numbers, std::size_t count) {
+        ZSTD_outBuffer out{numbers, count * sizeof *numbers, 0};
+        while (out.pos < out.size) {
+            step(out);
+        }
+    }
+    /// Throws unless the last frame ends here.
+    void finish() {
+        std::uint8_t further = 0;
+        while (inFrame_ || in_.pos < in_.size) {
+            ZSTD_outBuffer out{&further, 1, 0};
+            step(out);
+            if (out.pos > 0) {
+                refuse();
+            }
+        }
+    }
+
+private:
+    [[noreturn]] static void refuse() { throw base::FormatError("cells that do not unpack to the grid's size"); }
+
+    void step(ZSTD_outBuffer& out) {
+        const std::size_t inBefore = in_.pos, outBefore = out.pos;
+        const std::size_t left = ZSTD_decompressStream(context_.get(), &out, &in_);
+        if (ZSTD_isError(left) != 0 || (in_.pos == inBefore && out.pos == outBefore)) {
+            refuse();
+        }
+        inFrame_ = left != 0;
+    }
+
+    std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context_;
+    ZSTD_inBuffer in_;
+    bool inFrame_ = true;
+};
+
+}  // namespace
+
+void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer,
+                 const std::function<void()>& between) {
+    const auto across = static_cast<std::size_t>(cells.x1 - cells.x0);
+    const std::size_t place = writer.beginBlock();
+    std::vector<std::int32_t> plain;
+    plain.reserve(std::min(countOf(cells), kStripe + across));
+    base::Bytes packed;
+    for (int y = cells.y0; y < cells.y1; ++y) {
+        plain.insert(plain.end(), grid.row(y) + cells.x0, grid.row(y) + cells.x1);
+        if (y + 1 == cells.y1 || plain.size() + across > kStripe) {
+            appendFrame(plain, packed, writer);
+            plain.clear();
+            if (between) {
+                between();
+            }
+        }
+    }
+    writer.endBlock(place);
+}
+
+void encodePacked(const base::Bytes& packed, base::ByteWriter& writer) { writer.putBytes(packed); }
+
+std::shared_ptr<const base::Bytes> packedCells(const CellArray& grid, const CellRect& cells,
+                                               const std::function<void()>& between) {
+    base::ByteWriter writer;
+    encodeCells(grid, cells, writer, between);
+    return std::make_shared<const base::Bytes>(writer.bytes());  // a copy, without the writer's spare memory
 }
 
 void requireCells(base::ByteReader reader, std::size_t cells) {
@@ -41,20 +120,16 @@ void requireCells(base::ByteReader reader, std::size_t cells) {
 
 void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid) {
     requireCells(reader, countOf(cells));
-    const auto packed = reader.getBlock();
-    std::vector<std::int32_t> plain(countOf(cells));
-    const std::size_t size = plain.size() * sizeof plain[0];
-    if (ZSTD_decompress(plain.data(), size, packed.data(), packed.size()) != size) {
-        throw base::FormatError("cells that do not unpack to the grid's size");
-    }
-    if (std::any_of(plain.begin(), plain.end(), [most](std::int32_t n) { return n > most || n < -most; })) {
-        throw base::FormatError("a number out of range in a grid");
-    }
-    auto next = plain.begin();
+    Unpacker unpacker(reader.getBlock());
+    const int across = cells.x1 - cells.x0;
     for (int y = cells.y0; y < cells.y1; ++y) {
-        std::copy(next, next + (cells.x1 - cells.x0), grid.row(y) + cells.x0);
-        next += cells.x1 - cells.x0;
+        std::int32_t* const row = grid.row(y) + cells.x0;
+        unpacker.read(row, static_cast<std::size_t>(across));
+        if (std::any_of(row, row + across, [most](std::int32_t n) { return n > most || n < -most; })) {
+            throw base::FormatError("a number out of range in a grid");
+        }
     }
+    unpacker.finish();
 }
 
 }  // namespace sand

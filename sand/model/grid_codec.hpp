@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <memory>
 
 #include "base/byte_stream.hpp"
 #include "sand/model/cell_array.hpp"
@@ -9,15 +11,25 @@
 namespace sand {
 
 /// Appends the numbers of `cells` to `writer`, compressed without loss. `cells` may include ghost cells. Scenes, states
-/// and the journal use this format.
-void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer);
+/// and the journal use this format: a block of zstd frames, each with a stripe of whole rows. Needs memory for a stripe
+/// and for the compressed bytes. Calls `between` after each stripe, unless it is empty. It may throw, in order to stop.
+void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer,
+                 const std::function<void()>& between = {});
+
+/// Returns what encodeCells() writes.
+[[nodiscard]] std::shared_ptr<const base::Bytes> packedCells(const CellArray& grid, const CellRect& cells,
+                                                             const std::function<void()>& between = {});
+
+/// Appends what packedCells() has returned.
+void encodePacked(const base::Bytes& packed, base::ByteWriter& writer);
 
 /// Throws base::FormatError if so few compressed bytes come next that no `cells` cells can be in them. Code that takes
 /// the size of a grid from outside calls it before it makes the grid.
 void requireCells(base::ByteReader reader, std::size_t cells);
 
 /// Reads what encodeCells() wrote for the same `cells` of a grid of the same size. Throws base::FormatError for other
-/// bytes, or if a number is beyond ±`most`.
+/// bytes, or if a number is beyond ±`most`; `cells` then have unspecified numbers. Also reads one frame of all rows, as
+/// earlier builds wrote it.
 void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid);
 
 }  // namespace sand

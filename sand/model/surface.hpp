@@ -48,8 +48,10 @@ public:
     SurfaceCopy(const SurfaceCopy&) = default;
     SurfaceCopy& operator=(const SurfaceCopy&) = default;
     virtual ~SurfaceCopy() = default;
-    /// Returns the snapshot as compressed bytes for a SurfaceReader.
-    [[nodiscard]] virtual base::Bytes encode() const = 0;
+    /// Returns the snapshot as compressed bytes for a SurfaceReader. Calls `between` meanwhile, at least once, unless
+    /// it is empty. It may throw, in order to stop.
+    [[nodiscard]] virtual base::Bytes encode(const std::function<void()>& between) const = 0;
+    [[nodiscard]] base::Bytes encode() const { return encode({}); }
 };
 
 /// The result of sweeps.

@@ -55,7 +55,10 @@ Snapshot::Snapshot(std::span<const std::uint8_t> packed, const SandLimits& limit
     }
 }
 
-base::Bytes Snapshot::encode() const {
+base::Bytes Snapshot::encode(const std::function<void()>& between) const {
+    if (between) {
+        between();  // once, because a TIN is small
+    }
     base::ByteWriter writer;
     state_.encode(writer);
     writer.put(static_cast<std::uint64_t>(plain_.size()));

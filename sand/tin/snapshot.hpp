@@ -39,7 +39,8 @@ public:
     /// outflow together must be within ±kMostSand; steps keep that sum. Allocates memory only for limits.mostVertices.
     Snapshot(std::span<const std::uint8_t> packed, const SandLimits& limits);
 
-    [[nodiscard]] base::Bytes encode() const override;
+    using SurfaceCopy::encode;
+    [[nodiscard]] base::Bytes encode(const std::function<void()>& between) const override;
     [[nodiscard]] VertexSand layer() const;
     [[nodiscard]] const TinState& state() const { return state_; }
 

@@ -67,9 +67,10 @@ template <class AnyScene>
 struct Sand {
     AnyScene& scene;
     double cellSize;  // [scene unit]
+    sand::Start::Keep keep;
     void put(base::ByteWriter& writer) const { scene.encodeSand(writer); }
     void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyScene>) {
-        scene.decodeSand(reader, cellSize);
+        scene.decodeSand(reader, cellSize, keep);
     }
 };
 
@@ -89,6 +90,7 @@ template <class AnyScene>
 struct Whole {
     AnyScene& scene;
     bool withStatements = true;
+    sand::Start::Keep keep = sand::Start::Keep::heights;
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         AnyScene& scene = it.scene;
@@ -96,7 +98,7 @@ struct Whole {
         double cellSize = scene.terrain.cellSize();
         visit("cell_size",
               base::limited(cellSize, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()));
-        visit("sand", Sand<AnyScene>{scene, cellSize});
+        visit("sand", Sand<AnyScene>{scene, cellSize, it.keep});
         Look::fields(scene.look, visit);
         sand::ForceConstants::fields(scene.force, visit);
         visit("parts", Parts<AnyScene>{scene, it.withStatements});
@@ -108,12 +110,17 @@ struct Whole {
 base::Bytes Scene::encode() const { return base::encoded(Whole<const Scene>{*this}); }
 
 bool Scene::isEncodedAs(std::span<const std::uint8_t> bytes) const {
-    const base::Bytes own = base::encoded(Whole<const Scene>{*this, false});
-    if (bytes.size() < own.size() || !std::equal(own.begin(), own.end(), bytes.begin())) {
+    Scene other;
+    try {
+        other = decode(bytes);
+    } catch (const base::FormatError&) {
         return false;
     }
-    const auto rest = bytes.subspan(own.size());
-    return rest.empty() || rest.front() == static_cast<std::uint8_t>(Part::Kind::statements);
+    if (!sameHeights(terrain, other.terrain)) {
+        return false;
+    }
+    other.packed = packed;  // another build may have compressed the same sand to other bytes
+    return base::encoded(Whole<const Scene>{*this, false}) == base::encoded(Whole<const Scene>{other, false});
 }
 
 sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
@@ -121,10 +128,10 @@ sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
     return base::read<Head>(reader).rules;
 }
 
-Scene Scene::decode(std::span<const std::uint8_t> bytes) {
+Scene Scene::decode(std::span<const std::uint8_t> bytes, Keep keep) {
     base::ByteReader reader(bytes);
     Scene scene;
-    base::getMember(reader, Whole<Scene>{scene});
+    base::getMember(reader, Whole<Scene>{scene, true, keep});
     return scene;
 }
 

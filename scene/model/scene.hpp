@@ -61,7 +61,7 @@ struct Scene : sand::Start {
     /// another path, and journals of earlier builds have none.
     [[nodiscard]] bool isEncodedAs(std::span<const std::uint8_t> bytes) const;
     /// Reads what encode() wrote, except warnings and material. Throws base::FormatError for invalid bytes.
-    static Scene decode(std::span<const std::uint8_t> bytes);
+    static Scene decode(std::span<const std::uint8_t> bytes, Keep keep = Keep::heights);
     /// Decodes only the rules, which give the size of the rest. Throws base::FormatError.
     static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);
 };

@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <stdexcept>
+#include <variant>
 
+#include "sand/replica.hpp"
+#include "sand/surface_factory.hpp"
 #include "tests/support/sand/tin_scene.hpp"
 
 namespace {
@@ -71,5 +75,72 @@ TEST(StartMiddle, OfASmallFieldIsTheWholeField) {
 }
 
 TEST(StartMiddle, OfATinIsNotMade) { EXPECT_EQ(Start(samples::tinScene()).middle(512), std::nullopt); }
+
+/// Returns a scene whose heights are all different.
+scene::Scene hilly(int columns, int rows) {
+    scene::Scene scene = samples::flatScene(columns, rows);
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            scene.terrain.setHeight(column, row, 100'000 * row + column);
+        }
+    }
+    return scene;
+}
+
+// Replicas and the encoded scene share the compressed heights.
+TEST(StartPacked, ChangesNeitherBytesNorSand) {
+    scene::Scene scene = hilly(70, 50);
+    const base::Bytes plain = scene.encode();
+    const sand::Replica before(scene);
+    scene.pack();
+    EXPECT_EQ(scene.encode(), plain);
+    sand::Replica after(scene);
+    sand::Step step{1, 1, false, {}};
+    step.edit = sand::Edit(sand::Edit::reset);
+    step.sweeps = after.wholeSweeps(step);
+    after.apply(step);
+    EXPECT_TRUE(sameHeights(std::get<sand::GridData>(after.surface().data()).field, scene.terrain));
+    EXPECT_EQ(scene::Scene::decode(plain).packed, nullptr) << "its terrain may change";
+    const scene::Scene decoded = scene::Scene::decode(plain, Start::Keep::packedToo);
+    ASSERT_NE(decoded.packed, nullptr);
+    EXPECT_EQ(*decoded.packed, *scene.packed);
+    EXPECT_EQ(decoded.encode(), plain);
+}
+
+TEST(StartPacked, IsDroppedWithTheHeights) {
+    scene::Scene scene = hilly(70, 50);
+    scene.pack();
+    sand::Replica sand(scene);
+    const std::uint64_t hash = sand.stateHash();
+    const double cell = scene.terrain.cellSize();
+    scene.dropHeights();
+    EXPECT_EQ(scene.packed, nullptr);
+    EXPECT_EQ(scene.terrain.cellSize(), cell);
+    EXPECT_EQ(scene.rules.columns, 70);
+    EXPECT_THROW((void)scene.referenceHeight(), std::logic_error);
+    EXPECT_EQ(sand.stateHash(), hash);
+    scene::Scene tin = samples::tinScene();
+    const std::int32_t mean = tin.referenceHeight();
+    tin.dropHeights();
+    EXPECT_EQ(tin.referenceHeight(), mean) << "a TIN is kept";
+}
+
+// The heights of the surface at the start outlive those of the Start, unpacked or not.
+TEST(StartHeights, StayWhenTheStartDropsItsHeights) {
+    for (const bool packs : {false, true}) {
+        for (const sand::Heights when : {sand::Heights::now, sand::Heights::atFirstUse}) {
+            scene::Scene scene = hilly(70, 50);
+            if (packs) {
+                scene.pack();
+            }
+            const sand::HeightField before = scene.terrain;
+            const sand::HeightAt heights = sand::startHeights(scene, when);
+            scene.dropHeights();
+            for (const double at : {5.5 * sand::kProbePerCell, 33.25 * sand::kProbePerCell}) {
+                EXPECT_EQ(heights(at, at + 7), before.interpolated(at, at + 7)) << packs;
+            }
+        }
+    }
+}
 
 }  // namespace
