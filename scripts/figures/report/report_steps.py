@@ -69,18 +69,18 @@ def large_tools(tables):
     first, last = (min(spheres, key=lambda row: row["R"]), max(spheres, key=lambda row: row["R"]))
     compared = [row for row in rows if row["behind"] != ""]
     exponent = math.log(last["ms_p50"] / first["ms_p50"]) / math.log(last["R"] / first["R"]) if last["R"] > first["R"] else 0
-    return (f"A hand digs along a circle for 40 steps and lifts the tool ([docs/sand.md](../sand.md#large-tools)). The reference has all "
-            "sweeps, R²/6 a step, and no coarse cells.\n\n"
+    return (f"A hand digs along a circle for 40 steps and lifts the tool ([docs/sand.md](../sand.md#large-tools)). The reference has "
+            "R²/6 sweeps a step and no coarse cells.\n\n"
             "- *law*: coarse levels, each with the side of its cells and its sweeps, as it is built.\n"
-            "- *all*: time of a step with all sweeps; *p50*, *p99*: as it is built; *ratio*: p50 divided by *all*.\n"
-            "- *behind*, *at the end*: sand in another place than with all sweeps, at the end of the stroke and at rest.\n"
-            "- *highest*: highest sand at the end of the stroke, divided by that with all sweeps.\n"
+            "- *reference*: time of a step of the reference; *p50*, *p99*: as it is built; *ratio*: p50 divided by *reference*.\n"
+            "- *behind*, *at the end*: sand in another place than in the reference, at the end of the stroke and at rest.\n"
+            "- *highest*: highest sand at the end of the stroke, divided by that of the reference.\n"
             "- *to rest*: steps and CPU time after lifting; 4000 steps are the most that are measured.\n\n"
             f"The time of a step grows with R^{exponent:.2g} from R = {first['R']:g} to {last['R']:g}. At most "
             f"{max(row['behind'] for row in compared):.2g} % of the sand is in another place behind the hand, and "
             f"{max(row['at_end'] for row in compared):.2g} % at rest. In the figure, *one more level* has finer coarse cells too, *near* has a patch that is half a radius smaller on "
             "each side, and *capped* as many sweeps as a step without a movement, and no coarse cells.\n\n" +
-            markdown(["place", "tool", "N", "R [cells]", "law", "all [ms]", "p50 [ms]", "p99 [ms]", "ratio", "behind", "at the end",
+            markdown(["place", "tool", "N", "R [cells]", "law", "reference [ms]", "p50 [ms]", "p99 [ms]", "ratio", "behind", "at the end",
                       "highest", "steps to rest", "to rest [s]"], lines))
 
 
