@@ -71,7 +71,8 @@ void forgetHalves(const fs::path& journal) {
     }
 }
 
-void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept) {
+void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept,
+                     const std::function<void()>& between) {
     try {
         host::makeFolders(folderOf(journal));
     } catch (const fs::filesystem_error& error) {
@@ -80,7 +81,14 @@ void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std:
     }
     const base::Bytes bytes = checkpoint.encode();
     host::WholeFile file(checkpointFile(journal, checkpoint.step), host::WholeFile::Other::refused);
-    file.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    constexpr std::size_t kPiece = 1 << 22;
+    for (std::size_t done = 0; done < bytes.size(); done += kPiece) {
+        file.stream().write(reinterpret_cast<const char*>(bytes.data()) + done,
+                            static_cast<std::streamsize>(std::min(kPiece, bytes.size() - done)));
+        if (between) {
+            between();
+        }
+    }
     file.keepSynced();
     const std::vector<std::uint64_t> steps = checkpointsOf(journal);
     for (std::size_t i = kept; i < steps.size(); ++i) {

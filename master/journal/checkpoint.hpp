@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,8 @@ struct Checkpoint {
 void forgetHalves(const std::filesystem::path& journal);
 /// Writes a checkpoint, which is whole and on disk when the function returns. Then removes all but the newest `kept`
 /// checkpoints. Throws base::InputError if the disk refuses it. Any thread, but only one at a time.
-void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, std::size_t kept);
+void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, std::size_t kept,
+                     const std::function<void()>& between = {});
 /// Reads a file of checkpointFile(). Throws base::FormatError if the file or its folder is a link, or the file cannot
 /// be read or is damaged.
 [[nodiscard]] Checkpoint readCheckpoint(const std::filesystem::path& file);

@@ -25,6 +25,7 @@ namespace {
 constexpr double kRetrySeconds = 1;
 constexpr const char* kBeyond = ".beyond";   // behind the name of a checkpoint that was set aside
 constexpr std::size_t kCheckpointsKept = 3;  // the newest two may be damaged
+constexpr const char* kLeftOut = "it is left out";
 
 bool hasSetAside(const std::filesystem::path& checkpoints) {
     std::error_code none;
@@ -71,7 +72,7 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
     lastCheckpoint_ -= options_.checkpointSeconds;
 }
 
-JournalKeeper::~JournalKeeper() { endCheckpoint(true); }
+JournalKeeper::~JournalKeeper() { endCheckpoint(); }
 
 void JournalKeeper::requireNoWriter() const {
     std::uint32_t last = 1;
@@ -220,11 +221,26 @@ void JournalKeeper::checked(const journal::JournalChecked& checked) {
 
 void JournalKeeper::force(const journal::JournalForce& force) { note(force); }
 
-void JournalKeeper::endCheckpoint(bool wait) {
-    if (!checkpoint_.valid() || (!wait && checkpoint_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)) {
+/// Waits for the checkpoint that is being written, at most for kPatience, and leaves it out then.
+void JournalKeeper::endCheckpoint() {
+    if (checkpoint_.valid() && checkpoint_.wait_for(kPatience) != std::future_status::ready) {
+        *leftOut_ = true;
+        host::printLine("the checkpoint of step {} is left out, because it was not written within {} s",
+                        checkpointStep_, kPatience.count());
+        checkpoint_.wait();
+    }
+    takeCheckpoint();
+}
+
+/// Takes the result of a checkpoint if it has been written.
+void JournalKeeper::takeCheckpoint() {
+    if (!checkpoint_.valid() || checkpoint_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
         return;
     }
     const std::string complaint = checkpoint_.get();
+    if (complaint == kLeftOut) {
+        return;
+    }
     checkpointsFailed_ += complaint.empty() ? 0 : 1;
     if (!complaint.empty() && complaint != complaint_) {  // printed once, even if it repeats
         host::printLine("{}; no checkpoint was written, and the session continues", complaint);
@@ -233,7 +249,7 @@ void JournalKeeper::endCheckpoint(bool wait) {
 }
 
 void JournalKeeper::shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
-    endCheckpoint(false);
+    takeCheckpoint();
     const bool due = options_.checkpointSeconds > 0 && now() - lastCheckpoint_ >= options_.checkpointSeconds;
     if (!writer_ || !due || doubted_ || checkpoint_.valid() || replica.stepNumber() == checkpointStep_) {
         return;
@@ -243,22 +259,29 @@ void JournalKeeper::shown(const sand::Replica& replica, std::uint64_t frame, std
     auto copy = std::make_shared<const sand::StateCopy>(replica.copyState());
     copyMs_.push_back(1e3 * (now() - lastCheckpoint_));
     Checkpoint checkpoint{writer_->session(), buildId_, sceneDigest_, checkpointStep_, frame, epoch, hash, {}};
-    checkpoint_ = std::async(std::launch::async, [copy = std::move(copy), checkpoint, journal = journal_]() mutable {
-        try {
-            checkpoint.state = copy->encode();
-            copy.reset();
-            writeCheckpoint(journal, checkpoint, kCheckpointsKept);
-            return std::string();
-        } catch (const std::exception& error) {
-            return std::string(error.what());
-        }
-    });
+    checkpoint_ = std::async(std::launch::async,
+                             [copy = std::move(copy), checkpoint, journal = journal_, leftOut = leftOut_]() mutable {
+                                 const auto requireWanted = [&leftOut] {
+                                     if (*leftOut) {
+                                         throw std::runtime_error(kLeftOut);
+                                     }
+                                 };
+                                 try {
+                                     checkpoint.state = copy->encode(requireWanted);
+                                     copy.reset();
+                                     requireWanted();
+                                     writeCheckpoint(journal, checkpoint, kCheckpointsKept, requireWanted);
+                                     return std::string();
+                                 } catch (const std::exception& error) {
+                                     return std::string(error.what());
+                                 }
+                             });
 }
 
 double JournalKeeper::stoppedSeconds() const { return stoppedSeconds_ + (stopped_ ? now() - stoppedSince_ : 0); }
 
 void JournalKeeper::finish(const journal::JournalEnd& end) {
-    endCheckpoint(true);
+    endCheckpoint();
     try {
         if (writer_ && doubted_) {
             writer_->sync();

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -63,6 +66,7 @@ public:
     /// Returns whether there is room for `bytes` bytes more, for example of sand that an operator asks to load.
     /// Returns false while the sand is stopped. The answer does not stop the sand.
     [[nodiscard]] bool hasRoomFor(std::int64_t bytes, const journal::JournalEnd& now);
+    static constexpr std::chrono::seconds kPatience{5};
     static constexpr std::int64_t kResumeBytes = 1 << 20;  // [byte], of steps in about three minutes of digging
     /// Writes the steps of a frame, and returns when they are on disk. `materials` are the materials that their edits
     /// set. Throws DiskFailure if the disk refuses them and the policy is required.
@@ -79,7 +83,8 @@ public:
     void force(const journal::JournalForce& force);
     /// Begins a checkpoint if one is due. Called after every frame, when all steps of `replica` are in the journal.
     void shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
-    /// Writes the end of the session. Between doubt() and checked() the journal gets no end.
+    /// Writes the end of the session. Between doubt() and checked() the journal gets no end. A checkpoint that is being
+    /// written gets kPatience to end, because the journal holds every step without it.
     void finish(const journal::JournalEnd& end);
 
     [[nodiscard]] JournalPolicy policy() const { return options_.policy; }
@@ -106,7 +111,8 @@ private:
     void refused(const std::string& why);
     void requireNoWriter() const;
     void setAside(std::uint64_t step);
-    void endCheckpoint(bool wait);
+    void takeCheckpoint();
+    void endCheckpoint();
 
     JournalOptions options_;
     std::filesystem::path journal_;
@@ -120,7 +126,9 @@ private:
     double lastCheckpoint_ = 0;  // [s]
     std::uint64_t checkpointStep_ = 0;
     std::future<std::string> checkpoint_;  // result of the one that is being written: its error message
-    std::string complaint_;                // error message of the last checkpoint
+    // Whether the checkpoint that is being written is to be left out. Its thread reads it.
+    std::shared_ptr<std::atomic<bool>> leftOut_ = std::make_shared<std::atomic<bool>>(false);
+    std::string complaint_;  // error message of the last checkpoint
     std::uint64_t checkpointsFailed_ = 0, checkpointsBeyond_ = 0;
     bool ticksLeftOut_ = false;
     bool doubted_ = false;
