@@ -4,6 +4,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/link/greetings.hpp"
@@ -49,6 +50,9 @@ void setLastWords(const lockstep::Cluster& cluster, const master::ProgramOptions
 
 int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options) {
     std::optional<master::World> world;
+    std::optional<master::MasterSand> sand;
+    const host::WorkerPool pool(options.sandThreads);
+    options.session.executor = pool.lend();
     bool sessionOpen = false;
     setLastWords(cluster, options, nullptr);
     try {
@@ -56,7 +60,16 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
         setLastWords(cluster, options, &world->wall);
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
+        std::exception_ptr failed;
+        try {
+            sand.emplace(master::sandOf(options.session, world->scene));  // while the ranks make theirs
+        } catch (...) {
+            failed = std::current_exception();  // the ranks still report whether they are ready
+        }
         const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0});
+        if (failed) {
+            std::rethrow_exception(failed);
+        }
         master::requireReady(ranks, master::RankLabels::of(cluster, world->wall).names);
         master::requireTiles(ranks, world->wall);
         for (const lockstep::Readiness& rank : ranks) {
@@ -75,9 +88,10 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
     (void)lockstep::agreeToGoOn(cluster, true);
     (void)lockstep::clockAheadOfMaster(cluster);
     try {
-        const host::WorkerPool pool(options.sandThreads);
-        options.session.executor = pool.lend();
-        return master::Session(cluster, world->scene, world->wall, options.session).run();
+        master::Session session(cluster, world->scene, world->wall, options.session, std::move(*sand));
+        world->scene.dropHeights();
+        world->message = {};
+        return session.run();
     } catch (const std::exception& error) {
         // The ranks are in the middle of a frame and cannot be asked to end.
         const bool input = dynamic_cast<const base::InputError*>(&error) != nullptr;

@@ -32,19 +32,20 @@ std::vector<sand::Step> untimed(const ArrivedSteps& steps) {
 }  // namespace
 
 Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, const walls::Wall& wall,
-                 SessionOptions options)
+                 SessionOptions options, MasterSand sand)
     : scene_(scene),
       wall_(wall),
       options_(completed(std::move(options))),
       labels_(RankLabels::of(cluster, wall)),
       hosts_(cluster.hosts()),
+      volumeOfHeights_(scene.volumeOfHeights()),
       barrier_(cluster, labels_.names, options_.frameTimeout,
                [this](int rank, const std::string& line) {
                    (void)writeFailure(labels_.failure("hung", rank, line), options_.out);
                }),
       frame_(options_.record.resumed ? options_.record.resumed->frame : 0),
       clock_(options_.refreshHz.value_or(wall.refreshHz), options_.pace),
-      sand_(sandOf(options_, scene)),
+      sand_(std::move(sand)),
       edits_(options_.record.resumed ? options_.record.resumed->lastEdit : 0),
       steps_(stepsOf(options_, scene, edits_)),
       record_(options_.out, options_.record, scene, labels_),

@@ -34,9 +34,10 @@ namespace master {
 /// usually 60 Hz. Main thread only.
 class Session {
 public:
-    /// `scene` and `wall` must outlive the session.
+    /// `scene` and `wall` must outlive the session. `sand` is sandOf() these options and this scene. The session does
+    /// not read the scene's heights after that.
     Session(const lockstep::Cluster& cluster, const scene::Scene& scene, const walls::Wall& wall,
-            SessionOptions options);
+            SessionOptions options, MasterSand sand);
 
     /// Runs all frames, and writes journal, pictures and summary. Collective with showTile() of the render ranks.
     ///
@@ -94,7 +95,8 @@ private:
     const walls::Wall& wall_;
     const SessionOptions options_;
     const RankLabels labels_;
-    const std::vector<lockstep::RankHost> hosts_;  // by rank
+    const std::vector<lockstep::RankHost> hosts_;        // by rank
+    const std::optional<std::int64_t> volumeOfHeights_;  // of the scene, as sand::Start has it
     lockstep::FrameBarrier barrier_;
     std::uint64_t frame_ = 0;
     std::optional<std::uint64_t> keptHashOf_;  // last step after which the journal has the hash

@@ -90,7 +90,7 @@ Summary Session::summary() {
     }
     summary.incidents = incidents();
     // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
-    summary.volumeInitial = sand::volumeOf(scene_);
+    summary.volumeInitial = volumeOfHeights_ ? *volumeOfHeights_ : sand::volumeOf(scene_);
     summary.volumeFinal = sand.volume();
     summary.volumeOutflow = sand.outflow();
     summary.seconds = clock_.seconds();

@@ -14,6 +14,7 @@
 
 #include "base/input_error.hpp"
 #include "host/event.hpp"
+#include "host/phase_progress.hpp"
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
 #include "lockstep/overlays.hpp"
@@ -29,8 +30,8 @@
 namespace master {
 namespace {
 
-/// Finds the place where the session in --out stopped, if there is one.
-void resume(const lockstep::Cluster& cluster, ProgramOptions& options) {
+/// Finds the place where the session in --out stopped, if there is one, and returns its scene.
+std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, ProgramOptions& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
     if (options.session.record.journal.policy == JournalPolicy::off) {
         throw base::InputError("--resume needs the journal of the session; leave out --journal off");
@@ -41,7 +42,7 @@ void resume(const lockstep::Cluster& cluster, ProgramOptions& options) {
     std::optional<ResumedSession> resumed = readSession(journal, options.scene);
     if (!resumed) {
         host::printLine("{}: nothing to resume; the session begins", journal.string());
-        return;
+        return std::nullopt;
     }
     if (resumed->cutBytes > 0) {
         host::printLine("{}: the last {} bytes are an incomplete write and are cut off", journal.string(),
@@ -57,15 +58,20 @@ void resume(const lockstep::Cluster& cluster, ProgramOptions& options) {
                     resumed->checkpointStep == 0 ? std::string("the scene")
                                                  : fmt::format("the checkpoint of step {}", resumed->checkpointStep),
                     resumed->replayedSteps);
+    scene::Scene scene = std::exchange(resumed->scene, scene::Scene());  // not kept twice
     options.session.record.resumed = std::make_shared<const ResumedSession>(std::move(*resumed));
+    return scene;
 }
 
 /// Returns the scene of the file `file`.
 scene::Scene readScene(const lockstep::Cluster& cluster, const std::string& file) {
     const std::vector<lockstep::RankHost>& hosts = cluster.hosts();
+    host::PhaseProgress progress("read", "reads the scene",
+                                 [](const std::string& line) { host::printLine("{}", line); });
     scene::Scene scene = scene::loadScene(
         file, {.raster = [&](int columns, int rows) { requireMemoryOfRaster(hosts, columns, rows, file); },
-               .field = [&](const sand::FieldSize& size) { requireMemory(hosts, size, file); }});
+               .field = [&](const sand::FieldSize& size) { requireMemory(hosts, size, file); },
+               .progress = [&](double share) { progress.done(share); }});
     for (const scene::RasterStatement& statement : *scene.statements) {
         host::printLine("{}: {}", statement.file, statement.text());
     }
@@ -101,10 +107,9 @@ scene::Scene openRecording(const lockstep::Cluster& cluster, ProgramOptions& opt
 scene::Scene loadScene(const lockstep::Cluster& cluster, ProgramOptions& options) {
     options.session.record.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
-        resume(cluster, options);
-        if (options.session.record.resumed) {
+        if (std::optional<scene::Scene> scene = resume(cluster, options)) {
             options.scene = options.scene.empty() ? options.out : options.scene;  // for error messages
-            return options.session.record.resumed->scene;
+            return std::move(*scene);
         }
     }
     if (!options.replay.empty()) {
@@ -207,6 +212,7 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
     requireFolder(options.out);
     World world{loadScene(cluster, options), loadWall(options), {}};
     requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
+    world.scene.pack();
     requireRanks(cluster, world.wall, options);
     makeOut(options.out);
     SessionOptions& session = options.session;

@@ -37,10 +37,13 @@ Client::~Client() = default;
 
 LinkStatus Client::link() const { return conversation_->shelf.status(); }
 
-void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
-                   StepRing recent) {
-    conversation_->grant({epoch, stepNumber, stateHash}, std::move(state), std::move(recent));
+void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, StepRing recent) {
+    conversation_->grant({epoch, stepNumber, stateHash}, std::move(recent));
 }
+
+bool Client::needsState() const { return conversation_->shelf.needsState(); }
+
+void Client::giveState(base::Bytes state) { conversation_->giveState(std::move(state)); }
 
 std::vector<TimedStep> Client::drain(std::size_t most) { return conversation_->drain(most); }
 

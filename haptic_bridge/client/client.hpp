@@ -31,10 +31,12 @@ struct Offer {
 /// program numbers steps, and the sand stands still. In all other states the master numbers them, except at the start
 /// of a session (master::LiveSteps::kStartWait).
 ///
-/// In the states `connecting`, `refused` and `lost` the client tries to connect again, without end.
+/// In the states `connecting`, `refused` and `lost` the client tries to connect again, without end. In the state
+/// `loading` it drops a server that does not get on for kLoadingNs.
 enum class Link : std::uint8_t {
     connecting,  // no server has answered yet
     refused,     // one side has refused the other; the message says why
+    loading,     // the server reads its scene; LinkStatus::loaded says how much of it
     offered,     // the handshake has succeeded: call grant()
     granting,    // grant() is under way
     linked,      // the server numbers the steps of the granted epoch
@@ -43,13 +45,10 @@ enum class Link : std::uint8_t {
     stopped      // stop() was called
 };
 constexpr auto valuesOf(Link) {
-    return std::array{base::Named{Link::connecting, "connecting"},
-                      base::Named{Link::refused, "refused"},
-                      base::Named{Link::offered, "offered"},
-                      base::Named{Link::granting, "granting"},
-                      base::Named{Link::linked, "linked"},
-                      base::Named{Link::streaming, "streaming"},
-                      base::Named{Link::lost, "lost"},
+    return std::array{base::Named{Link::connecting, "connecting"}, base::Named{Link::refused, "refused"},
+                      base::Named{Link::loading, "loading"},       base::Named{Link::offered, "offered"},
+                      base::Named{Link::granting, "granting"},     base::Named{Link::linked, "linked"},
+                      base::Named{Link::streaming, "streaming"},   base::Named{Link::lost, "lost"},
                       base::Named{Link::stopped, "stopped"}};
 }
 
@@ -58,6 +57,7 @@ struct LinkStatus {
     Link link = Link::connecting;
     std::string message;        // one line with the server's address, and with the reason if the link is down
     std::uint64_t changes = 0;  // grows when there is a new message to print
+    std::uint32_t loaded = 0;   // part of its scene that the server has read, by its last Loading, of Loading::kAll
 };
 
 /// Step from the server, with its times.
@@ -107,7 +107,7 @@ enum class LinkDrill : std::uint8_t {
 ///
 /// Order of calls:
 /// 1. Poll link() until the link is `offered`.
-/// 2. Call drain() for the steps of the last epoch, then grant() with the replica's state.
+/// 2. Call drain() for the steps of the last epoch, then grant(). While the link is `granting`, answer needsState().
 /// 3. While the link is `linked`, drain() the steps and apply them. Call shown() after every frame of the wall.
 /// 4. When the link is no longer `linked`, drain() the remaining steps. Then the master numbers the steps, in a new
 ///    epoch.
@@ -125,10 +125,13 @@ public:
     /// Lets the server number the steps of `epoch`, from `stepNumber` + 1 on. Drops steps that were not drained.
     /// Ignored unless the link is `offered`.
     ///
-    /// `stateHash` and `state` (sand::Replica::encodeState()) belong to step `stepNumber`. If the server's replica has
-    /// the sand after a step in `recent`, it gets only the steps that it lacks. Otherwise it gets `state`.
-    void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
-               StepRing recent = {});
+    /// `stateHash` belongs to step `stepNumber`. If the server's replica has the sand after a step in `recent`, it gets
+    /// only the steps that it lacks. Otherwise it needs the whole sand.
+    void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, StepRing recent = {});
+    /// Returns whether the server needs the whole sand after the granted step. Call giveState() then.
+    [[nodiscard]] bool needsState() const;
+    /// Sends the whole sand (sand::Replica::encodeState()). Ignored unless needsState().
+    void giveState(base::Bytes state);
     /// Returns at most `most` steps of the granted epoch, in order and without gaps.
     ///
     /// A server is at most StepMaker::kWindow steps ahead of shown(). Against a server that ignores this, the network

@@ -23,6 +23,7 @@ void Client::Conversation::connected(Connection::Socket socket) {
     greeter_.forget();
     drill_.forget();
     grant_.reset();
+    loaded_ = 0;
     shelf.dropTests();
     silence_.start([this] { return shelf.full(); }, [this] { fallSilent(); });
     connection_->start({[this](Message&& message) { receive(std::move(message)); },
@@ -50,6 +51,11 @@ void Client::Conversation::closed(const std::string& why) {
             retryPause_.lost(host::monotonicNs());
         }
         shelf.setStatus(Link::lost, fmt::format("{}: link lost, {}; trying again", peer(), why));
+    } else if (before == Link::loading) {
+        retryPause_.lost(host::monotonicNs());
+        shelf.fail(why);
+        shelf.setStatus(shelf.counters().links > 0 ? Link::lost : Link::connecting,
+                        fmt::format("{}: {}; connecting again", peer(), why));
     } else if (before != Link::refused) {
         failed(why);
         return;

@@ -16,13 +16,16 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::chrono::milliseconds kGoodbye{500};
+constexpr double kLoadingRate = 20;  // [message/s] of a server that reads its scene; it sends two
 
 /// Returns whether `message` may come while no steps are expected: a greeting, or a position of a streaming server.
 bool greets(const Message& message, Link link) {
-    if (std::holds_alternative<Challenge>(message) || std::holds_alternative<Welcome>(message)) {
+    if (std::holds_alternative<Challenge>(message) || std::holds_alternative<Welcome>(message) ||
+        std::holds_alternative<Loading>(message)) {
         return link < Link::offered || link > Link::streaming;
     }
     return std::holds_alternative<PositionGreeting>(message) ||
+           (std::holds_alternative<Pong>(message) && link == Link::loading) ||
            (std::holds_alternative<Position>(message) && link == Link::streaming);
 }
 
@@ -93,14 +96,16 @@ void Client::Conversation::fallSilent() {
     if (!up()) {  // the server accepted the connection and never greeted
         countRefusal(RefusalCode::limit);
     }
-    connection_->close(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
+    connection_->close(fmt::format("{} for {} s",
+                                   shelf.link() == Link::loading ? "its scene gets no further" : "silent",
+                                   silence_.most() / 1'000'000'000));
 }
 
-void Client::Conversation::grant(StartMessage start, base::Bytes state, StepRing recent) {
+void Client::Conversation::grant(StartMessage start, StepRing recent) {
     if (!shelf.beginGranting()) {
         return;
     }
-    asio::post(io_, [this, start, grant = Grant(start, std::move(state), std::move(recent))]() mutable {
+    asio::post(io_, [this, start, grant = Grant(start, std::move(recent))]() mutable {
         if (shelf.link() != Link::granting || !connection_) {
             return;
         }
@@ -108,6 +113,20 @@ void Client::Conversation::grant(StartMessage start, base::Bytes state, StepRing
         start.force = force_;
         shelf.setStatus(Link::granting, fmt::format("{}: handing over at step {}", peer(), start.stepNumber));
         connection_->send(start);
+    });
+}
+
+void Client::Conversation::giveState(base::Bytes state) {
+    if (!shelf.beginGivingState()) {
+        return;
+    }
+    asio::post(io_, [this, state = std::move(state)]() mutable {
+        // The connection may have ended, and the next one may be granted already.
+        if (connection_ && grant_ && grant_->awaitsState() && shelf.link() == Link::granting) {
+            grant_->stateGiven();
+            shelf.count([](LinkCounters& counters) { ++counters.snapshots; });
+            connection_->send(State{std::move(state)});
+        }
     });
 }
 
@@ -131,7 +150,9 @@ void Client::Conversation::request(const EditRequest& request) {
 }
 
 void Client::Conversation::receive(Message&& message) {
-    silence_.heard();
+    if (shelf.link() != Link::loading) {  // there only progress counts
+        silence_.heard();
+    }
     shelf.count([this](LinkCounters& counters) {
         counters.bytesIn = connection_->bytesIn();
         counters.bytesOut = connection_->bytesOut();
@@ -178,9 +199,40 @@ void Client::Conversation::take(Link link, const Welcome& greeting) {
         return;
     }
     connection_->limit(kMaxMessage);
+    connection_->setRate(Connection::kMaxRate);
+    silence_.setMost(kSilenceNs);
     countLink();
     shelf.setStepsPerSecond(greeting.stepsPerSecond);
     shelf.setStatus(Link::offered, fmt::format("{}: connected, {} steps per second", peer(), greeting.stepsPerSecond));
+    startPings();
+}
+
+void Client::Conversation::take(Link link, const Loading& loading) {
+    if (isUp(link)) {
+        outOfTurn();
+        return;
+    }
+    if (link != Link::loading) {
+        if (!greeter_.accepts(loading)) {
+            refuse("refused: " + greeter_.because().text, greeter_.because().code);
+            return;
+        }
+        connection_->setRate(kLoadingRate);
+        silence_.heard();
+        silence_.setMost(kLoadingNs);
+        retryPause_.linked(host::monotonicNs());
+        shelf.setLoaded(0);
+        shelf.setStatus(Link::loading, peer() + ": reads its scene");
+        startPings();
+    }
+    if (loading.done >= loaded_ + Loading::kAll / 100) {
+        loaded_ = loading.done;
+        silence_.heard();
+        shelf.setLoaded(loaded_);
+    }
+}
+
+void Client::Conversation::startPings() {
     pings_.start([this] {
         if (!drill_.active()) {
             connection_->send(Ping{host::monotonicNs()});
@@ -207,12 +259,15 @@ void Client::Conversation::take(Link link, const NeedState& need) {
         outOfTurn();
         return;
     }
-    const std::vector<Message> answer = grant_->handOver(need);
-    const bool whole = std::holds_alternative<State>(answer.front());
-    shelf.count([whole](LinkCounters& counters) { ++(whole ? counters.snapshots : counters.catchUps); });
+    const std::vector<CatchUp> answer = grant_->catchUps(need);
+    if (answer.empty()) {
+        shelf.askForState();
+        return;
+    }
+    shelf.count([](LinkCounters& counters) { ++counters.catchUps; });
     const auto connection = connection_;  // a copy, because sending may close the connection
-    for (const Message& message : answer) {
-        connection->send(message);
+    for (const CatchUp& steps : answer) {
+        connection->send(steps);
     }
 }
 

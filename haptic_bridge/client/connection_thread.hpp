@@ -31,7 +31,8 @@ public:
     Conversation& operator=(const Conversation&) = delete;
 
     // These functions may be called by any thread.
-    void grant(StartMessage start, base::Bytes state, StepRing recent);
+    void grant(StartMessage start, StepRing recent);
+    void giveState(base::Bytes state);
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
     void request(const EditRequest& request);
@@ -52,6 +53,7 @@ private:
     void refuse(const std::string& why, Connection::Fault fault);
     void countRefusal(RefusalCode code);
     void countLink();
+    void startPings();
     void retry();
     void fallSilent();
     [[nodiscard]] std::string peer() const { return "haptic server " + address_.text(); }
@@ -66,6 +68,7 @@ private:
     void take(Link link, const Bye& bye);
     void take(Link link, const Challenge& challenge);
     void take(Link link, const Welcome& welcome);
+    void take(Link link, const Loading& loading);
     void take(Link link, const Pong& pong);
     void take(Link link, const Report& report);
     void take(Link link, const TimingTest& test);
@@ -94,6 +97,7 @@ private:
     std::shared_ptr<Connection> connection_;
     std::optional<Grant> grant_;  // of this connection; nullopt before its Start
     ForceShare force_;            // of the next Start
+    std::uint32_t loaded_ = 0;    // last part of the scene that counted as progress on this connection
     bool stopping_ = false;
     std::thread thread_;
 };

@@ -6,12 +6,12 @@
 
 namespace haptic_bridge {
 
-std::vector<Message> Grant::handOver(const NeedState& need) {
-    std::vector<Message> answer;
+std::vector<CatchUp> Grant::catchUps(const NeedState& need) {
+    std::vector<CatchUp> answer;
     auto steps = handOvers_++ == 0 ? recent_.since(need, start_.stepNumber) : std::nullopt;
     if (!steps) {
         handOvers_ = 2;
-        answer.emplace_back(State{std::exchange(state_, {})});
+        awaitsState_ = true;
         return answer;
     }
     for (std::size_t begin = 0; begin < steps->size(); begin += kMaxCatchUp) {
@@ -19,7 +19,7 @@ std::vector<Message> Grant::handOver(const NeedState& need) {
         const auto at = [&](std::size_t i) {
             return std::make_move_iterator(steps->begin() + static_cast<std::ptrdiff_t>(i));
         };
-        answer.emplace_back(CatchUp{end == steps->size(), {at(begin), at(end)}});
+        answer.push_back({end == steps->size(), {at(begin), at(end)}});
     }
     return answer;
 }

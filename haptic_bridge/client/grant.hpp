@@ -11,26 +11,25 @@
 
 namespace haptic_bridge {
 
-/// The master's permission for a server to number the steps: the first step, the sand before it, and the steps that
+/// The master's permission for a server to number the steps: the first step, the steps before it, and the steps that
 /// have come since. Used by one thread; can be copied.
 class Grant {
 public:
     Grant() = default;
-    Grant(const StartMessage& start, base::Bytes state, StepRing recent)
-        : start_(start), state_(std::move(state)), recent_(std::move(recent)), lastStep_(start.stepNumber) {}
+    Grant(const StartMessage& start, StepRing recent)
+        : start_(start), recent_(std::move(recent)), lastStep_(start.stepNumber) {}
 
     [[nodiscard]] const StartMessage& start() const { return start_; }
     [[nodiscard]] std::uint64_t lastStep() const { return lastStep_; }
     /// Returns whether the server may ask for sand. It may ask twice.
     [[nodiscard]] bool mayHandOver() const { return handOvers_ < 2; }
-    /// Returns the messages that bring the server's sand to the start: CatchUps with the steps that it lacks. If these
-    /// steps are not known, or if the server asks again, returns the State.
-    [[nodiscard]] std::vector<Message> handOver(const NeedState& need);
-    /// Releases the sand for the server, because the server has begun.
-    void begun() {
-        state_ = {};
-        recent_ = {};
-    }
+    /// Returns the CatchUps that bring the server's sand to the start. If the steps that it lacks are not known, or if
+    /// the server asks again, returns none: awaitsState() is then true until stateGiven().
+    [[nodiscard]] std::vector<CatchUp> catchUps(const NeedState& need);
+    [[nodiscard]] bool awaitsState() const { return awaitsState_; }
+    void stateGiven() { awaitsState_ = false; }
+    /// Releases the steps for the server, because the server has begun.
+    void begun() { recent_ = {}; }
 
     enum class Arrival { next, stale, foreign, afterGap, unasked };
     /// Classifies a step of the server by epoch, number and number of its edit. `unasked` is the next step with an edit
@@ -49,10 +48,10 @@ public:
 
 private:
     StartMessage start_;
-    base::Bytes state_;
     StepRing recent_;
     std::deque<sand::Edit> asked_;  // edits that are in no step yet, oldest first
     int handOvers_ = 0;
+    bool awaitsState_ = false;
     std::uint64_t lastStep_ = 0;
 };
 

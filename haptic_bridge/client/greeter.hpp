@@ -50,6 +50,7 @@ public:
         }
         return handshake_->accepts(welcome) ? std::nullopt : std::optional(because());
     }
+    [[nodiscard]] bool accepts(const Loading& loading) { return handshake_->accepts(loading); }
     [[nodiscard]] bool accepts(const PositionGreeting& greeting) { return handshake_->accepts(greeting); }
     [[nodiscard]] const Refusal& because() const { return handshake_->because(); }
 

@@ -55,10 +55,14 @@ public:
     SilenceWatch(boost::asio::io_context& io, LinkClock clock) : timer_(io), now_(std::move(clock)) {}
 
     void heard() { heardNs_ = now_(); }
-    /// Counts from now on. Calls `silent` if nothing was heard for kSilenceNs. While excused() is true, the
-    /// server counts as heard.
+    /// Sets after how long the server counts as silent; kSilenceNs from the start on.
+    void setMost(std::int64_t most /* [ns] */) { most_ = most; }
+    [[nodiscard]] std::int64_t most() const { return most_; }
+    /// Counts from now on. Calls `silent` if nothing was heard for most(). While excused() is true, the server counts
+    /// as heard.
     void start(std::function<bool()> excused, std::function<void()> silent) {
         heard();
+        most_ = kSilenceNs;
         excused_ = std::move(excused);
         silent_ = std::move(silent);
         active_ = true;
@@ -78,7 +82,7 @@ private:
             }
             const std::int64_t now = now_();
             heardNs_ = excused_() ? now : heardNs_;
-            if (now - heardNs_ > kSilenceNs) {
+            if (now - heardNs_ > most_) {
                 silent_();
             } else {
                 look();
@@ -89,6 +93,7 @@ private:
     boost::asio::steady_timer timer_;
     LinkClock now_;
     std::int64_t heardNs_ = 0;  // [ns], on now_
+    std::int64_t most_ = kSilenceNs;
     std::function<bool()> excused_;
     std::function<void()> silent_;
     bool active_ = false;

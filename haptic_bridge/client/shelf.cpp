@@ -16,8 +16,14 @@ constexpr std::size_t kPieceBytes = 64;  // [byte], overhead of a piece
 void Shelf::setStatus(Link link, const std::string& message) {
     const std::lock_guard lock(mutex_);
     if (status_.changes == 0 || status_.link != link || status_.message != message) {
-        status_ = {link, message, status_.changes + 1};
+        needsState_ = needsState_ && status_.link == link;
+        status_ = {link, message, status_.changes + 1, status_.loaded};
     }
+}
+
+void Shelf::setLoaded(std::uint32_t done) {
+    const std::lock_guard lock(mutex_);
+    status_.loaded = done;
 }
 
 LinkStatus Shelf::status() const {
@@ -31,8 +37,24 @@ bool Shelf::beginGranting() {
         return false;
     }
     status_.link = Link::granting;
+    needsState_ = false;
     steps_.clear();
     return true;
+}
+
+void Shelf::askForState() {
+    const std::lock_guard lock(mutex_);
+    needsState_ = status_.link == Link::granting;
+}
+
+bool Shelf::needsState() const {
+    const std::lock_guard lock(mutex_);
+    return needsState_;
+}
+
+bool Shelf::beginGivingState() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(needsState_, false);
 }
 
 bool Shelf::add(TimedStep step) {

@@ -21,12 +21,20 @@ class Shelf {
 public:
     /// Sets the state of the link and its message. A change of either counts as a new message to print.
     void setStatus(Link link, const std::string& message);
+    /// Sets how much of its scene the server has read.
+    void setLoaded(std::uint32_t done);
     [[nodiscard]] LinkStatus status() const;
     [[nodiscard]] Link link() const { return status().link; }
     /// Changes the link from offered to granting at once, so that a caller that polls again does not see an offer.
     /// Drops the steps that were not drained. Returns false, and leaves the link unchanged, if the link was not
     /// offered.
     [[nodiscard]] bool beginGranting();
+
+    /// Notes that the server needs the whole sand, until the link has another state.
+    void askForState();
+    [[nodiscard]] bool needsState() const;
+    /// Returns needsState(), which is false from then on.
+    [[nodiscard]] bool beginGivingState();
 
     /// Adds a step. Returns whether the shelf is full now.
     [[nodiscard]] bool add(TimedStep step);
@@ -73,6 +81,7 @@ public:
 private:
     mutable std::mutex mutex_;
     LinkStatus status_;
+    bool needsState_ = false;
     std::deque<TimedStep> steps_;
     struct Test {
         std::uint32_t id = 0;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/link/connection.hpp"
@@ -60,6 +61,8 @@ public:
         timer_.cancel();
     }
     [[nodiscard]] const std::optional<std::string>& ended() const { return ended_; }
+    /// Returns whether the server has said goodbye because its scene is read. It then takes another connection.
+    [[nodiscard]] bool mayComeAgain() const { return readsScene_; }
 
 private:
     void greet() {
@@ -69,10 +72,15 @@ private:
 
     void receive(const Message& message) {
         heardNs_ = host::monotonicNs();
+        if (const auto* loading = std::get_if<Loading>(&message); loading != nullptr && !welcomed_) {
+            wait(*loading);
+            return;
+        }
         if (const auto* refusal = std::get_if<Refusal>(&message)) {
             end("refuses: " + refusal->text);
         } else if (const auto* bye = std::get_if<Bye>(&message)) {
             end("says goodbye: " + bye->reason);
+            readsScene_ = loading_;
         } else if (const auto* challenge = std::get_if<Challenge>(&message)) {
             if (const auto proof = handshake_->answer(*challenge)) {
                 connection_->send(*proof);
@@ -94,6 +102,19 @@ private:
                 probe_ = step->step.path.back();
             }
         }
+    }
+
+    /// Waits for a server that reads its scene.
+    void wait(const Loading& loading) {
+        if (!handshake_->accepts(loading)) {
+            end(handshake_->because().text);
+            return;
+        }
+        if (!std::exchange(loading_, true)) {
+            fmt::print("the server reads its scene\n");
+            std::fflush(stdout);
+        }
+        connection_->send(Ping{host::monotonicNs()});
     }
 
     void tick() {
@@ -138,25 +159,28 @@ private:
     sand::Step last_;
     sand::ProbePoint probe_;
     std::int64_t heardNs_ = host::monotonicNs();
-    bool welcomed_ = false;
+    bool welcomed_ = false, loading_ = false, readsScene_ = false;
     std::optional<std::string> ended_;
 };
 
 int run(const std::string& address, const LinkOptions& options, std::uint64_t lines) {
     const LinkSecurity security = options.forClient(Role::watch);
-    asio::io_context io;
-    Watcher watcher(io, security, lines);
-    watcher.connect(io, Address::parse(address, "server"));
-    asio::signal_set signals(io, SIGINT, SIGTERM);
-    signals.async_wait([&watcher](error_code error, int) {
-        if (!error) {
-            watcher.stop();
+    for (bool again = true; again;) {
+        asio::io_context io;
+        Watcher watcher(io, security, lines);
+        watcher.connect(io, Address::parse(address, "server"));
+        asio::signal_set signals(io, SIGINT, SIGTERM);
+        signals.async_wait([&watcher](error_code error, int) {
+            if (!error) {
+                watcher.stop();
+            }
+        });
+        while (!watcher.ended() && io.run_one() > 0) {
         }
-    });
-    while (!watcher.ended() && io.run_one() > 0) {
-    }
-    if (!watcher.ended()->empty()) {
-        throw std::runtime_error(address + ": " + *watcher.ended());
+        again = watcher.mayComeAgain();
+        if (!again && !watcher.ended()->empty()) {
+            throw std::runtime_error(address + ": " + *watcher.ended());
+        }
     }
     return 0;
 }

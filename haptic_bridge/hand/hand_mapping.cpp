@@ -8,14 +8,14 @@
 
 namespace haptic_bridge {
 
-HandMapping::HandMapping(const scene::Scene& scene, HandSettings::Datum datum)
+HandMapping::HandMapping(const scene::Scene& scene, HandSettings::Datum datum, sand::Heights when)
     : scene_(scene),
       datum_(datum),
       halfSide_(std::min(scene.rules.columns, scene.rules.rows) / 2.0),
       radius_(static_cast<double>(scene.rules.tuning.tool.radius) / sand::kProbePerCell),
       reference_(static_cast<double>(scene.referenceHeight()) / sand::kUnitsPerCell) {
     if (datum_ != HandSettings::Datum::level) {
-        surface_ = sand::startHeights(scene);
+        surface_ = sand::startHeights(scene, when);
     }
 }
 

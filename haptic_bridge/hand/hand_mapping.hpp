@@ -5,6 +5,7 @@
 #include "haptic_bridge/hand/hand_settings.hpp"
 #include "sand/model/mean_height.hpp"
 #include "sand/model/step.hpp"
+#include "sand/surface_factory.hpp"
 #include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
@@ -13,7 +14,8 @@ namespace haptic_bridge {
 /// outlive it.
 class HandMapping {
 public:
-    HandMapping(const scene::Scene& scene, HandSettings::Datum datum);
+    /// With Heights::atFirstUse, the first probe() unpacks the surface, which takes a second in the largest fields.
+    HandMapping(const scene::Scene& scene, HandSettings::Datum datum, sand::Heights when = sand::Heights::now);
 
     [[nodiscard]] HandSettings::Datum datum() const { return datum_; }
     /// Returns the probe point of `pose`, clamped to sand::kMaxProbe. Returns nullopt if a coordinate is not finite.

@@ -48,7 +48,7 @@ public:
     /// Sends `bytes`, an encoded message. Closes the connection if the other side leaves too much unread: more than
     /// setMaxUnsent() bytes in ordinary messages, or a second long message.
     void sendBytes(base::Bytes bytes);
-    void expectState(bool expected) { reader_.expectState(expected); }
+    void expectState(bool expected, std::size_t most = kMaxState) { reader_.expectState(expected, most); }
     void expectLoads(bool expected) { reader_.expectLoads(expected); }
     /// Sets the largest length of an ordinary message from now on [byte].
     void limit(std::size_t most) { reader_.limit(most); }

@@ -13,7 +13,7 @@
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // the bytes "SWHB" on the wire
-inline constexpr std::uint32_t kProtocolVersion = 11;
+inline constexpr std::uint32_t kProtocolVersion = 12;
 inline constexpr std::size_t kMaxSceneName = 256;  // [byte], also for the name of a device
 
 /// Versions and scene of one side. Both sides must have the same before the server may send steps.
@@ -116,6 +116,19 @@ struct Welcome {
         }
     }
     friend bool operator==(const Welcome&, const Welcome&) = default;
+};
+/// Takes the place of the Welcome while the server still reads its scene. Sent twice a second. When the scene is read,
+/// the server sends a Bye, and the peer begins again with a Hello.
+struct Loading {
+    static constexpr std::uint32_t kAll = 1000;
+    std::uint32_t done = 0;  // part of the work that is done, of kAll
+    MacBytes mac{};          // proves that the server knows the secret; zeros without a secret
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("done", base::limited(it.done, 0, kAll));
+        visit("mac", it.mac);
+    }
+    friend bool operator==(const Loading&, const Loading&) = default;
 };
 /// Refuses the connection. The server then closes it.
 struct Refusal {

@@ -7,7 +7,7 @@
 
 namespace haptic_bridge {
 
-std::optional<Refusal> refusalFor(const Identity& server, const Identity& master) {
+std::optional<Refusal> refusalForVersions(const Identity& server, const Identity& master) {
     if (server.protocol != master.protocol) {
         return Refusal{RefusalCode::protocol,
                        fmt::format("the server speaks protocol version {}, the master {}; run the same build on both",
@@ -18,6 +18,13 @@ std::optional<Refusal> refusalFor(const Identity& server, const Identity& master
                        fmt::format("the server's sand is algorithm version {}, the master's {}; run the same build on "
                                    "both",
                                    server.algorithm, master.algorithm)};
+    }
+    return std::nullopt;
+}
+
+std::optional<Refusal> refusalFor(const Identity& server, const Identity& master) {
+    if (auto refusal = refusalForVersions(server, master)) {
+        return refusal;
     }
     if (server.sceneName != master.sceneName) {
         return Refusal{RefusalCode::scene, fmt::format("the server has scene '{}', the master '{}'; start both with "
@@ -104,6 +111,8 @@ bool MasterHandshake::accepts(const Welcome& welcome) {
            refuse(RefusalCode::role, "it grants role " + std::string(base::nameOf(welcome.role)) + ", but role " +
                                          std::string(base::nameOf(transcript_.hello.role)) + " was requested");
 }
+
+bool MasterHandshake::accepts(const Loading& loading) { return proven(transcript_.challenge.server, loading.mac); }
 
 bool MasterHandshake::accepts(const PositionGreeting& greeting) {
     return proven({greeting.protocol, 0, 0, greeting.name}, greeting.mac);

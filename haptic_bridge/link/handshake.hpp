@@ -13,6 +13,8 @@ namespace haptic_bridge {
 /// Returns the server's refusal of a master with another identity, with what the user should do; nullopt if both
 /// identities are equal.
 [[nodiscard]] std::optional<Refusal> refusalFor(const Identity& server, const Identity& master);
+/// Compares only protocol and algorithm, which a server knows before its scene.
+[[nodiscard]] std::optional<Refusal> refusalForVersions(const Identity& server, const Identity& master);
 
 /// Secrets and TLS of one end of the link. The default has neither. Copies share the same TLS context.
 struct LinkSecurity {
@@ -46,6 +48,9 @@ public:
     /// Returns whether the server has proved the secret and granted the role. If it returns false, because() gives the
     /// reason.
     [[nodiscard]] bool accepts(const Welcome& welcome);
+    /// Returns whether a server that reads its scene has proved the secret. If it returns false, because() gives the
+    /// reason.
+    [[nodiscard]] bool accepts(const Loading& loading);
     /// Returns whether a server without sand has proved the secret. If it returns false, because() gives the reason.
     [[nodiscard]] bool accepts(const PositionGreeting& greeting);
     [[nodiscard]] const Refusal& because() const { return because_; }

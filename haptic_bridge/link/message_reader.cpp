@@ -26,6 +26,8 @@ constexpr std::uint8_t typeOf() {
 
 }  // namespace
 
+std::size_t MessageReader::mostLength() const { return stateExpected_ ? std::max(kMaxState, mostState_) : kMaxState; }
+
 bool MessageReader::mayBeLong(std::uint8_t type) const {
     return type == typeOf<State>() ? stateExpected_ : type == typeOf<EditRequest>() && loadsExpected_;
 }
@@ -53,11 +55,14 @@ std::optional<Message> MessageReader::next() {
     }
     const std::uint32_t length = framedLength(stream);
     const bool longMessage = length > most_;
-    if (length == 0 || length > kMaxState || (longMessage && !stateExpected_ && !loadsExpected_)) {
+    if (length == 0 || length > mostLength() || (longMessage && !stateExpected_ && !loadsExpected_)) {
         throw base::FormatError(fmt::format("a message of {} bytes; at most {} are allowed", length, most_));
     }
     if (longMessage && stream.size() > kLengthBytes && !mayBeLong(stream[kLengthBytes])) {
         throw base::FormatError(fmt::format("a message of {} bytes that holds no sand", length));
+    }
+    if (length > kMaxState && stream.size() > kLengthBytes && stream[kLengthBytes] != typeOf<State>()) {
+        throw base::FormatError(fmt::format("a load of {} bytes; at most {} are allowed", length, kMaxState));
     }
     if (stream.size() < kLengthBytes + length) {
         return std::nullopt;

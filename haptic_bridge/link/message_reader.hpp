@@ -17,8 +17,11 @@ public:
     /// Returns the next whole message; nullopt if it has not arrived yet. Throws base::FormatError if a length is out
     /// of bounds or the bytes are not a message. The link must then be closed.
     [[nodiscard]] std::optional<Message> next();
-    /// Sets whether a State of up to kMaxState bytes may come next.
-    void expectState(bool expected) { stateExpected_ = expected; }
+    /// Sets whether a State may come next, of up to `most` bytes.
+    void expectState(bool expected, std::size_t most = kMaxState) {
+        stateExpected_ = expected;
+        mostState_ = most;
+    }
     /// Sets whether an EditRequest that loads sand, of up to kMaxState bytes, may come.
     void expectLoads(bool expected) { loadsExpected_ = expected; }
     /// Sets the largest length of an ordinary message from now on [byte]; kMaxMessage at first.
@@ -31,9 +34,10 @@ public:
 private:
     void freeLongMessage();
     [[nodiscard]] bool mayBeLong(std::uint8_t type) const;
+    [[nodiscard]] std::size_t mostLength() const;
 
     base::Bytes buffer_;
-    std::size_t begin_ = 0, most_ = kMaxMessage;
+    std::size_t begin_ = 0, most_ = kMaxMessage, mostState_ = kMaxState;
     bool stateExpected_ = false, loadsExpected_ = false;
 };
 

@@ -12,9 +12,9 @@ namespace {
 
 /// Names of the messages, in the order of Message.
 constexpr std::array<std::string_view, std::variant_size_v<Message>> kMessages{
-    "Hello",      "Welcome",   "Refusal",          "Start",    "Ready",     "NeedState", "State",  "Step",
-    "TimingTest", "Shown",     "TimingEcho",       "Ping",     "Pong",      "Report",    "Bye",    "EditRequest",
-    "ForceShare", "TickPiece", "PositionGreeting", "Position", "Challenge", "Proof",     "CatchUp"};
+    "Hello",      "Welcome",   "Refusal",          "Start",    "Ready",     "NeedState", "State",   "Step",
+    "TimingTest", "Shown",     "TimingEcho",       "Ping",     "Pong",      "Report",    "Bye",     "EditRequest",
+    "ForceShare", "TickPiece", "PositionGreeting", "Position", "Challenge", "Proof",     "CatchUp", "Loading"};
 
 }  // namespace
 

@@ -28,7 +28,8 @@ inline constexpr std::uint16_t kDefaultPort = 7750;
 inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload of an ordinary message
 inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], type and payload of a message before the Welcome
 // [byte], type and payload of a message with sand: a State, or an EditRequest that loads sand. Accepted only when such
-// a message is expected. A field of 8192 × 8192 cells compresses to about 150 MiB.
+// a message is expected. A field of 8192 × 8192 cells compresses to about 150 MiB. A State of a larger field may be
+// longer (sand::Start::mostStateBytes()).
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
 static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits");
 inline constexpr std::size_t kMaxReason = 512;  // [byte] of the reason in a Refusal or a Bye; the rest is cut off
@@ -36,6 +37,9 @@ inline constexpr std::size_t kMaxCatchUp = 16;  // [step] in one CatchUp; a step
 // [ns], silence of the other side after which either end drops the link. Each end sends a message once a second or more
 // often.
 inline constexpr std::int64_t kSilenceNs = 10'000'000'000;
+// [ns], time in which a server that reads its scene must do another hundredth of that work. After it the master drops
+// the link.
+inline constexpr std::int64_t kLoadingNs = 120'000'000'000;
 
 // Messages from the master to the server.
 
@@ -243,7 +247,7 @@ struct Bye {
 /// One message of any type. The type byte on the wire is the type's place in this list, counted from 1.
 using Message = std::variant<Hello, Welcome, Refusal, StartMessage, Ready, NeedState, State, StepMessage, TimingTest,
                              Shown, TimingEcho, Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece,
-                             PositionGreeting, Position, Challenge, Proof, CatchUp>;
+                             PositionGreeting, Position, Challenge, Proof, CatchUp, Loading>;
 
 /// Returns the bytes of `message` on the wire: length, type, payload.
 [[nodiscard]] base::Bytes encode(const Message& message);

@@ -6,7 +6,9 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/system/error_code.hpp>
 #include <functional>
+#include <mutex>
 #include <utility>
 
 namespace haptic_bridge {
@@ -25,19 +27,41 @@ public:
             signals_.add(SIGHUP);
         }
         signal(SIGPIPE, SIG_IGN);
-    }
-
-    /// Calls `end` at the first signal, on the thread that runs the io context. Also at one that has come before.
-    void onFirst(std::function<void()> end) {
-        signals_.async_wait([end = std::move(end)](boost::system::error_code error, int) {
+        signals_.async_wait([this](boost::system::error_code error, int) {
             if (!error) {
-                end();
+                came();
             }
         });
     }
 
+    /// Calls `end` at the first signal, on the thread that runs the io context. If one has come since hold(), calls it
+    /// at once. Replaces the function of an earlier call. Any thread.
+    void onFirst(std::function<void()> end) {
+        const std::lock_guard lock(mutex_);
+        end_ = std::move(end);
+        if (came_) {
+            end_();
+        }
+    }
+    /// Only notes a signal, until onFirst(). When this returns, no earlier function runs. Any thread.
+    void hold() {
+        const std::lock_guard lock(mutex_);
+        end_ = {};
+    }
+
 private:
+    void came() {
+        const std::lock_guard lock(mutex_);
+        came_ = true;
+        if (end_) {
+            end_();
+        }
+    }
+
     boost::asio::signal_set signals_;
+    std::mutex mutex_;  // of the two below
+    std::function<void()> end_;
+    bool came_ = false;
 };
 
 }  // namespace haptic_bridge

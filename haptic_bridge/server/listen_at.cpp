@@ -43,7 +43,7 @@ asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text, 
     return acceptor;
 }
 
-void writePortFile(const std::string& file, std::uint16_t port) {
+void writePortFile(const std::string& option, const std::string& file, std::uint16_t port) {
     if (file.empty()) {
         return;
     }
@@ -52,7 +52,7 @@ void writePortFile(const std::string& file, std::uint16_t port) {
         whole.stream() << port << '\n';
         whole.keep();
     } catch (const base::InputError& error) {
-        throw base::InputError(std::string("--port-file ") + error.what());
+        throw base::InputError(option + " " + error.what());
     }
 }
 

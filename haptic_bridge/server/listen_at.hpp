@@ -13,7 +13,7 @@ namespace haptic_bridge {
                                                       bool secret);
 
 /// Writes the port's number to `file`, unless `file` is empty. It writes another file and renames it, so that a reader
-/// never sees half a number. Throws base::InputError if the file cannot be written.
-void writePortFile(const std::string& file, std::uint16_t port);
+/// never sees half a number. Throws base::InputError, which names `option`, if the file cannot be written.
+void writePortFile(const std::string& option, const std::string& file, std::uint16_t port);
 
 }  // namespace haptic_bridge

@@ -50,6 +50,28 @@ void Listener::serve(SandThread& sandThread) {
     accept();
 }
 
+void Listener::answerLoading(std::chrono::milliseconds quiet) {
+    pause_.expires_after(quiet);
+    pause_.async_wait([this](error_code cancelled) {
+        if (!cancelled && !shutting_) {
+            accept();
+        }
+    });
+}
+
+asio::ip::tcp::acceptor Listener::endLoading() {
+    shutting_ = true;
+    pause_.cancel();
+    error_code ignored;
+    acceptor_.cancel(ignored);
+    for (const auto& peers : {roster_->unauthenticated(), roster_->watchers()}) {
+        for (const auto& peer : peers) {
+            peer->endLoading();
+        }
+    }
+    return std::move(acceptor_);
+}
+
 void Listener::accept() {
     acceptor_.async_accept([this](error_code error, Connection::Socket socket) {
         if (shutting_) {

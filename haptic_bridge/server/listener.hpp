@@ -3,6 +3,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -31,6 +32,11 @@ public:
     [[nodiscard]] SandThread::Output output();
     /// Accepts masters from now on.
     void serve(SandThread& sandThread);
+    /// Answers peers with Loading, after `quiet`. A short load needs no answer: its peers wait to be accepted.
+    void answerLoading(std::chrono::milliseconds quiet);
+    /// Ends that. Says goodbye to these peers, and returns the acceptor. Their connections close later, so this object
+    /// must outlive the io context's next run.
+    [[nodiscard]] boost::asio::ip::tcp::acceptor endLoading();
     /// Says goodbye to the master and stops listening. Stops the io context when the master's connection has closed, or
     /// after 0.6 s.
     void shut(const std::string& reason);

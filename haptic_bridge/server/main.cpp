@@ -5,6 +5,8 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include "base/input_error.hpp"
@@ -18,6 +20,7 @@
 #include "haptic_bridge/server/force_ceiling.hpp"
 #include "haptic_bridge/server/listen_at.hpp"
 #include "haptic_bridge/server/listener.hpp"
+#include "haptic_bridge/server/loading_answers.hpp"
 #include "haptic_bridge/server/parent_watch.hpp"
 #include "haptic_bridge/server/server_options.hpp"
 #include "haptic_bridge/server/timings.hpp"
@@ -25,7 +28,9 @@
 #include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "host/memory.hpp"
+#include "host/phase_progress.hpp"
 #include "host/version.hpp"
+#include "host/whole_file.hpp"
 #include "host/worker_pool.hpp"
 #include "scene/load/memory.hpp"
 
@@ -34,6 +39,9 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 using namespace haptic_bridge;
+
+constexpr double kStripe = 1 << 22;  // [byte] of heights that are compressed at once
+constexpr double kScene = 0.8;  // part of the time to the first answer that the scene takes; its replica takes the rest
 
 void print(const std::string& line) {
     std::fprintf(stderr, "sandwall-haptic-server: %s\n", line.c_str());
@@ -121,10 +129,40 @@ std::function<std::vector<base::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
     };
 }
 
-scene::Scene openScene(const std::string& file) {
+scene::Scene loadScene(const std::string& file, const std::function<void(double)>& done) {
     const std::int64_t free = host::freeMemoryOfProcess();
-    scene::Scene scene = scene::loadScene(file, scene::checksOfOneReplica(file, free));
+    scene::SizeChecks checks = scene::checksOfOneReplica(file, free);
+    checks.progress = done;
+    scene::Scene scene = scene::loadScene(file, checks);
     scene::requireReplica(scene, file, free);
+    return scene;
+}
+
+/// Error in the scene that was written to --scene-error-file.
+class ReportedError : public base::InputError {
+public:
+    using base::InputError::InputError;
+};
+
+/// Reads the scene. `done` gets the part of it that is read, 0 to 1.
+scene::Scene openScene(const ServerOptions& options, const std::function<void(double)>& done) {
+    scene::Scene scene;
+    try {
+        scene = loadScene(options.scene, done);
+    } catch (const base::InputError& error) {
+        if (options.sceneErrorFile.empty()) {
+            throw;
+        }
+        try {
+            host::WholeFile file(options.sceneErrorFile);
+            file.stream() << error.what() << '\n';
+            file.keep();
+        } catch (const base::InputError& refused) {
+            print(std::string("--scene-error-file ") + refused.what());
+            throw error;
+        }
+        throw ReportedError(error.what());
+    }
     for (const scene::RasterStatement& statement : *scene.statements) {
         print(statement.file + ": " + statement.text());
     }
@@ -152,11 +190,12 @@ Service serviceOf(const ServerOptions& options, const scene::Scene& scene, asio:
     service.forceCeiling = own.ceiling();
     service.switchOn = [&hand] { hand.switchOn(); };
     service.tests = options.tests;
+    service.mostState = std::max(kMaxState, scene.mostStateBytes());
     return service;
 }
 
 void announce(const ServerOptions& options, const HapticTick& hand, const asio::ip::tcp::endpoint& endpoint) {
-    writePortFile(options.portFile, endpoint.port());
+    writePortFile("--port-file", options.portFile, endpoint.port());
     for (const std::string& line : hand.limitsInWords()) {
         print(line);
     }
@@ -191,12 +230,32 @@ void printEnd(const ServerOptions& options, const HapticTick& hand, const ForceL
 void serve(const ServerOptions& options) {
     options.checkRealDevice();
     const LinkSecurity security = options.link.forServer();
-    const scene::Scene scene = openScene(options.scene);
     const HandSettings settings = HandSettings::parse(options.map);
-    std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
-    const Device& device = *opened;  // the hand takes ownership below
     asio::io_context io;
     EndSignals signals(io);  // lives longer than the hand, so that a second signal cannot keep it from letting go
+    asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
+    const auto endpoint = acceptor.local_endpoint();
+    writePortFile("--listening-file", options.listeningFile, endpoint.port());
+    signals.onFirst([] {
+        print("stopped while it read the scene");
+        std::_Exit(0);  // the device is not open yet
+    });
+    LoadingAnswers loading(io, std::move(acceptor), security, print);
+    host::PhaseProgress progress("read", "reads the scene", print);
+    scene::Scene scene = openScene(options, [&](double share) {
+        loading.setDone(kScene * share);
+        progress.done(kScene * share);
+    });
+    double packed = 0;  // part of the time to compress the heights
+    scene.pack([&] {
+        packed = std::min(packed + kStripe / static_cast<double>(scene.terrain.cells().bytes()), 1.0);
+        loading.setDone(kScene + (1 - kScene) * packed);
+    });
+    const host::WorkerPool pool(options.sandThreads);
+    std::optional<sand::Replica> replica(std::in_place, scene, pool.lend());
+    signals.hold();  // a device that is open must be closed in order
+    std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
+    const Device& device = *opened;  // the hand takes ownership below
     HandChannel channel;
     Listener* open = nullptr;  // for the main thread alone
     channel.failure.onFailure([&io, &open] {
@@ -212,8 +271,7 @@ void serve(const ServerOptions& options) {
     const std::unique_ptr<TickRecorder> recorder = recorderOf(options, hand, channel.failure);
     channel.recorder = recorder.get();
 
-    asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
-    const auto endpoint = acceptor.local_endpoint();
+    acceptor = loading.end();
     std::function<Report()> measure;
     Service service = serviceOf(options, scene, io, hand);
     service.report = [&measure] { return measure(); };
@@ -221,8 +279,9 @@ void serve(const ServerOptions& options) {
     service.security = security;
     Listener listener(std::move(service), std::move(acceptor));
     // The sand and force threads end before the link they report to.
-    const host::WorkerPool pool(options.sandThreads);
-    SandThread sandThread(scene, options.pace, hand, channel, listener.output(), pool.lend());
+    SandThread sandThread(std::move(*replica), options.pace, hand, channel, listener.output());
+    replica.reset();
+    scene.dropHeights();
     const auto loop = options.pace == Pace::realtime
                           ? std::make_unique<ForceLoop>(hand, channel, options.device, aboutToBeKilled())
                           : nullptr;
@@ -267,6 +326,8 @@ int main(int count, char** words) {
         }
         serve(options);
         return 0;
+    } catch (const ReportedError&) {
+        return base::kExitBadInput;
     } catch (const base::InputError& error) {
         print(error.what());
         return base::kExitBadInput;

@@ -93,7 +93,7 @@ void Peer::ready() {
 }
 
 void Peer::needState(const NeedState& need) {
-    connection_->expectState(true);
+    connection_->expectState(true, service_.mostState);
     // Steps are accepted only the first time. After that the master must send the whole sand.
     grant_.catchUpsLeft = std::exchange(grant_.askedForSteps, true) ? 0 : StepRing::kSteps / kMaxCatchUp;
     connection_->send(need);
@@ -136,6 +136,29 @@ void Peer::tickTimingTest(double pause) {
     });
 }
 
+void Peer::tickLoading() {
+    connection_->send(Loading{service_.loading(), handshake_.mac()});
+    reportTimer_.expires_after(milliseconds(500));
+    reportTimer_.async_wait([self = shared_from_this()](error_code error) {
+        if (!error && self->phase_ == Phase::loading) {
+            self->tickLoading();
+        }
+    });
+}
+
+void Peer::endLoading(const std::string& why) {
+    if (phase_ == Phase::over) {
+        return;
+    }
+    if (phase_ == Phase::loading) {
+        connection_->send(Loading{service_.loading(), handshake_.mac()});
+    }
+    connection_->send(Bye{why});
+    const auto kept = connection_;
+    end(why);
+    kept->finish();
+}
+
 void Peer::tickReport() {
     reportTimer_.expires_after(milliseconds(1000));
     reportTimer_.async_wait([self = shared_from_this()](error_code error) {
@@ -160,6 +183,10 @@ void Peer::sendGoodbye(const std::string& reason) {
         return;
     }
     goodbye_ = reason;
+    if (phase_ == Phase::loading) {
+        endLoading(reason);
+        return;
+    }
     if (phase_ != Phase::linked) {
         close(Audited::no);
         return;
@@ -199,7 +226,7 @@ void Peer::end(const std::string& why, Connection::Fault fault) {
     const auto kept = shared_from_this();
     const bool unauthenticated = phase_ <= Phase::proving;
     // Masters come one at a time, so each end is logged. Unauthenticated connections and watchers may come in floods.
-    const bool master = !unauthenticated && role_ == Role::move;
+    const bool master = !unauthenticated && role_ == Role::move && phase_ != Phase::loading;
     if (master) {
         log(why);
     }

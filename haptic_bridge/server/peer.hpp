@@ -31,13 +31,15 @@ public:
     /// most kAuditPatience.
     void sendGoodbye(const std::string& reason);
     void audited(Audited result);
+    /// Says goodbye while the server reads its scene. A peer without a reason of its own greets again.
+    void endLoading(const std::string& why = "its scene is read");
 
     [[nodiscard]] std::uint32_t session() const { return session_; }
     [[nodiscard]] boost::asio::ip::address address() const { return connection_->address(); }
     [[nodiscard]] std::weak_ptr<Connection> connection() const { return connection_; }
 
 private:
-    enum class Phase { greeting, proving, waiting, granting, linked, leaving, watching, over };
+    enum class Phase { greeting, proving, waiting, granting, linked, leaving, loading, watching, over };
 
     void receive(Message&& message);
     void take(const Hello& hello);
@@ -62,6 +64,7 @@ private:
     void end(const std::string& why, Connection::Fault fault = std::nullopt);
     void sendTicks(bool all);
     void tickReport();
+    void tickLoading();
     void tickTimingTest(double pause /* [s] */ = 0);
     void watch();
     void log(const std::string& what) const;

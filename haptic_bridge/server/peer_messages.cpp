@@ -26,6 +26,10 @@ void Peer::receive(Message&& message) {
     }
     heardNs_ = phase_ <= Phase::proving ? heardNs_ : host::monotonicNs();
     const bool passes = std::holds_alternative<Ping>(message) || std::holds_alternative<Bye>(message);
+    if (phase_ == Phase::loading && !passes) {
+        outOfTurn();
+        return;
+    }
     if (phase_ == Phase::watching && !passes) {
         refuse({RefusalCode::role, "a watcher only listens; this message needs the secret of role move"});
         return;
@@ -40,7 +44,8 @@ void Peer::take(const Hello& hello) {
     }
     // A watcher has no sand, so only the protocol version must be equal.
     const bool versionAlone = hello.role == Role::watch && hello.master.protocol == kProtocolVersion;
-    if (const auto refusal = versionAlone ? std::nullopt : refusalFor(service_.identity, hello.master)) {
+    const auto compare = service_.loading ? refusalForVersions : refusalFor;
+    if (const auto refusal = versionAlone ? std::nullopt : compare(service_.identity, hello.master)) {
         refuse(*refusal);
         return;
     }
@@ -152,12 +157,23 @@ void Peer::welcome() {
                                                roster_.master()->connection_->peer())});
         return;
     }
-    if (role_ == Role::watch && roster_.watchersAreFull()) {
-        refuse({RefusalCode::busy, fmt::format("busy: {} watchers are linked already", kMaxWatchers)});
+    // Masters that wait for a scene are among the watchers, and half of the places are theirs.
+    const std::size_t places = service_.loading && role_ == Role::watch ? kMaxWatchers / 2 : kMaxWatchers;
+    if ((role_ == Role::watch || service_.loading) && roster_.watchers().size() >= places) {
+        refuse({RefusalCode::busy, service_.loading
+                                       ? "busy: others wait already until this server has read its scene"
+                                       : fmt::format("busy: {} watchers are linked already", kMaxWatchers)});
         return;
     }
     connection_->setMaxIn(std::numeric_limits<std::uint64_t>::max());
     connection_->setLinger(Connection::kLinger);
+    if (service_.loading) {
+        phase_ = Phase::loading;
+        roster_.promoteToWatcher(shared_from_this());
+        connection_->setRate(kWatcherRate);
+        tickLoading();
+        return;
+    }
     if (role_ == Role::move) {
         phase_ = Phase::waiting;
         session_ = roster_.promoteToMaster(shared_from_this());

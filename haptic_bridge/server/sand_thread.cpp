@@ -21,11 +21,10 @@ std::unique_ptr<DeviceHand> handFor(Pace pace, HapticTick& hand, HandChannel& ch
 
 }  // namespace
 
-SandThread::SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
-                       const base::Executor* executor)
+SandThread::SandThread(sand::Replica replica, Pace pace, HapticTick& hand, HandChannel& channel, Output output)
     : pace_(pace),
-      hand_(handFor(pace, hand, channel, scene.rules.stepsPerSecond)),
-      maker_(scene, *hand_, std::move(output), executor) {
+      hand_(handFor(pace, hand, channel, replica.rules().stepsPerSecond)),
+      maker_(std::move(replica), *hand_, std::move(output)) {
     thread_ = std::thread([this, &channel] { channel.failure.run("the sand thread", [this] { run(); }); });
 }
 

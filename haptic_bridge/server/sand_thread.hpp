@@ -27,8 +27,8 @@ public:
 
     /// Under Pace::fast this thread runs the ticks of `hand`, and no other thread may use it. The channel gets an
     /// exception of this thread.
-    SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
-               const base::Executor* executor = nullptr);
+    /// `replica` is the scene's sand.
+    SandThread(sand::Replica replica, Pace pace, HapticTick& hand, HandChannel& channel, Output output);
     ~SandThread();
     SandThread(const SandThread&) = delete;
     SandThread& operator=(const SandThread&) = delete;

@@ -39,7 +39,11 @@ void ServerOptions::addTo(host::CommandLine& line) {
             "and spacenav; docs/forces.md")
         .offeredBy({"run"});
     line.option("--listen", listen, "ADDRESS:PORT; port 0 takes any free one");
-    line.option("--port-file", portFile, "file that gets the port's number when the server listens");
+    line.option("--port-file", portFile, "file that gets the port's number when a master can be linked");
+    line.option("--listening-file", listeningFile,
+                "file that gets the port's number when the server listens, before it has read its scene");
+    line.option("--scene-error-file", sceneErrorFile,
+                "file that gets the line about an error in the scene, in place of standard error");
     line.option("--timings", timings,
                 "CSV file for histograms at the end: period of the force loop and time for each force");
     line.option("--timing-tests", tests.perSecond,

@@ -14,7 +14,7 @@ namespace haptic_bridge {
 
 /// Options of sandwall-haptic-server.
 struct ServerOptions {
-    std::string scene, device, listen = "127.0.0.1:7750", portFile, timings;
+    std::string scene, device, listen = "127.0.0.1:7750", portFile, listeningFile, sceneErrorFile, timings;
     std::vector<std::string> map;
     Pace pace = Pace::realtime;
     Guards::Mode guards = Guards::Mode::on;

@@ -32,7 +32,11 @@ struct Service {
     std::function<void()> switchOn = [] {};
     TimingTests tests = {};
     LinkSecurity security = {};
-    SandThread* sandThread = nullptr;  // set by Listener::serve()
+    std::size_t mostState = kMaxState;  // longest State of this scene [byte]
+    SandThread* sandThread = nullptr;   // set by Listener::serve()
+    /// Returns the part of the scene that has been read, of Loading::kAll. Empty when the scene is read. Until then
+    /// `identity` has the versions alone, and peers get Loading in place of Welcome.
+    std::function<std::uint32_t()> loading = {};
 };
 
 }  // namespace haptic_bridge

@@ -23,14 +23,13 @@ std::string whyNot(const Decode& decode) {
 
 }  // namespace
 
-StepMaker::StepMaker(const scene::Scene& scene, DeviceHand& hand, Output output, const base::Executor* executor,
-                     Clock clock)
+StepMaker::StepMaker(sand::Replica replica, DeviceHand& hand, Output output, Clock clock)
     : hand_(hand),
       output_(std::move(output)),
-      replica_(scene, executor),
+      replica_(std::move(replica)),
       now_(std::move(clock)),
-      clock_(scene.rules.stepsPerSecond),
-      budget_(hand.onHostClock() ? Pace::realtime : Pace::fast, 1'000'000'000 / scene.rules.stepsPerSecond) {}
+      clock_(replica_.rules().stepsPerSecond),
+      budget_(hand.onHostClock() ? Pace::realtime : Pace::fast, 1'000'000'000 / replica_.rules().stepsPerSecond) {}
 
 bool StepMaker::asGranted() {
     return replica_.stepNumber() == start_.stepNumber && replica_.stateHash() == start_.stateHash;

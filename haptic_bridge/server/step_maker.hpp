@@ -42,9 +42,8 @@ public:
 
     using Clock = std::function<std::int64_t()>;  // [ns], monotonic
 
-    /// `hand` must outlive this object. `executor` shares out the work of its replica; see sand::Replica.
-    StepMaker(const scene::Scene& scene, DeviceHand& hand, Output output, const base::Executor* executor = nullptr,
-              Clock clock = host::monotonicNs);
+    /// `replica` is the scene's sand. `hand` must outlive this object.
+    StepMaker(sand::Replica replica, DeviceHand& hand, Output output, Clock clock = host::monotonicNs);
 
     /// Begins the master's epoch if the replica has the sand of `start`. Otherwise asks the master for that sand, and
     /// waits for state() or catchUp().

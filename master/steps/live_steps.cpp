@@ -53,7 +53,7 @@ LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::
     : now_(clock ? std::move(clock) : host::monotonicNs),
       link_(std::move(server), {scene.rules.digest(), scene.name, scene.rules.stepLimits()}, std::move(security), now_,
             pace == haptic_bridge::Pace::fast ? scene.rules.stepsPerSecond : 0),
-      own_(scene, pace, atRest),
+      own_(scene, pace, atRest, link_.hasServer()),
       edits_(edits),
       budget_(pace, 1'000'000'000 / scene.rules.stepsPerSecond),
       pace_(pace),
@@ -83,7 +83,7 @@ void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
 
 void LiveSteps::grant(const sand::Replica& replica, std::uint64_t stateHash) {
     ++epoch_;
-    link_.client()->grant(epoch_, replica.stepNumber(), stateHash, replica.encodeState(), recent_);
+    link_.client()->grant(epoch_, replica.stepNumber(), stateHash, recent_);
     source_ = Source::granting;
     waitingSinceNs_ = now_();
 }
@@ -95,7 +95,16 @@ void LiveSteps::followLink(const sand::Replica& replica, std::uint64_t stateHash
     if (link_.client() == nullptr) {
         return;
     }
-    const Link link = link_.follow(epoch_).link;
+    const haptic_bridge::LinkStatus status = link_.follow(epoch_);
+    const Link link = status.link;
+    if (status.loaded > loadedMost_) {
+        loadedMost_ = status.loaded;
+        progressNs_ = now_();
+    }
+    if (link == Link::loading) {
+        progressNs_ = progressNs_ == 0 ? now_() : progressNs_;
+        waitingSinceNs_ = now_();  // it has time to connect again afterwards
+    }
     own_.followPositions(*link_.client(), link, replica, now_());
     if (link == Link::linked) {
         source_ = Source::server;
@@ -107,6 +116,9 @@ void LiveSteps::followLink(const sand::Replica& replica, std::uint64_t stateHash
         }
     } else if (link == Link::offered) {
         grant(replica, stateHash);
+    } else if (link_.client()->needsState()) {
+        link_.client()->giveState(replica.encodeState());
+        waitingSinceNs_ = now_();
     } else {
         waitForLink(link);
     }
@@ -124,7 +136,9 @@ void LiveSteps::waitForLink(Link link) {
     } else if (source_ == Source::starting) {
         if (link == Link::refused) {
             takeOver("refused", "refused");
-        } else if (secondsSince(waitingSinceNs_) > kStartWait) {
+        } else if (progressNs_ != 0 && secondsSince(progressNs_) > kLoadingWait) {
+            takeOver("no_server", fmt::format("{} gets no further with its scene", server));
+        } else if (link != Link::loading && secondsSince(waitingSinceNs_) > kStartWait) {
             takeOver("no_server", fmt::format("no answer from {} for {:.0f} s", server, kStartWait));
         }
     } else if (source_ != Source::own) {

@@ -25,12 +25,15 @@ namespace master {
 /// slides continues to slide. The tool of the master's steps is where a server without sand reports it, or it hovers.
 /// Each change begins a new epoch. Main thread only.
 ///
-/// There are three times without steps: at the start, at most kStartWait; while a server takes over, at most
-/// kGrantWait; and while the master numbers the steps and nothing moves (OwnSteps::rests()).
+/// There are three times without steps: at the start, at most kStartWait after the last progress of a server that reads
+/// its scene; while a server takes over, at most kGrantWait, and as long again if it needs the whole sand; and while
+/// the master numbers the steps and nothing moves (OwnSteps::rests()).
 class LiveSteps : public StepSource, public ForceControl {
 public:
     /// Time at the start for which the master waits for a haptic server before it numbers the steps itself [s].
     static constexpr double kStartWait = 10;
+    /// Time in which a server that reads its scene at the start must get further than ever before [s].
+    static constexpr double kLoadingWait = haptic_bridge::kLoadingNs * 1e-9;
     /// Time within which a server must begin to number the steps when the master has asked it to [s].
     static constexpr double kGrantWait = 5;
     static constexpr double kRetryWait = 30;  // [s] until the master asks such a server again
@@ -107,6 +110,8 @@ private:
     haptic_bridge::Pace pace_;
     Source source_;
     std::uint32_t epoch_;
+    std::int64_t progressNs_ = 0;   // [ns], time at which loadedMost_ has grown; 0: no server has read its scene
+    std::uint32_t loadedMost_ = 0;  // most that a server has read of its scene, of haptic_bridge::Loading::kAll
     std::int64_t waitingSinceNs_;   // [ns], since when the master waits for the server
     std::uint64_t linksNoted_ = 0;  // number of the link whose last report noteLastReport() has judged
     bool memoryChanged_ = false;    // a server has reported it, and proveServer() has not returned it yet

@@ -30,8 +30,13 @@ public:
     static constexpr double kRestAfter = 1;
 
     /// Under the fast pace, `atRest` has no effect: each frame has a step.
-    OwnSteps(const scene::Scene& scene, haptic_bridge::Pace pace, AtRest atRest)
-        : stepsPerSecond_(scene.rules.stepsPerSecond), pace_(pace), atRest_(atRest), positions_(scene) {}
+    /// Only with a server may positions come.
+    OwnSteps(const scene::Scene& scene, haptic_bridge::Pace pace, AtRest atRest, bool hasServer)
+        : stepsPerSecond_(scene.rules.stepsPerSecond),
+          pace_(pace),
+          atRest_(atRest),
+          positions_(scene, hasServer ? haptic_bridge::HandSettings::Datum::surface
+                                      : haptic_bridge::HandSettings::Datum::level) {}
 
     /// Call it when the master begins to number the steps.
     void begin(std::int64_t nowNs) {

@@ -9,8 +9,8 @@ namespace master {
 
 using haptic_bridge::Trouble;
 
-PositionSource::PositionSource(const scene::Scene& scene)
-    : Hand(scene.rules.stepsPerSecond), mapping_(scene, haptic_bridge::HandSettings::Datum::surface) {}
+PositionSource::PositionSource(const scene::Scene& scene, haptic_bridge::HandSettings::Datum datum)
+    : Hand(scene.rules.stepsPerSecond), mapping_(scene, datum, sand::Heights::atFirstUse) {}
 
 void PositionSource::begin(const sand::Replica& sand) {
     Hand::begin(sand);

@@ -24,7 +24,8 @@ public:
     // [hand space], longest plausible movement between two positions: a quarter of the field.
     static constexpr double kFarthest = 0.5;
 
-    explicit PositionSource(const scene::Scene& scene);
+    /// With a surface as `datum`, the first position unpacks the scene's heights.
+    PositionSource(const scene::Scene& scene, haptic_bridge::HandSettings::Datum datum);
 
     /// Call it when a server begins to stream.
     void begin(const sand::Replica& sand) override;

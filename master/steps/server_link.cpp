@@ -31,6 +31,7 @@ void ServerLink::leave(const std::string& why) {
     client_->stop();
     client_.reset();
     changes_ = 0;
+    loaded_ = 0;
     trippedTicks_.reset();
     tripped_ = false;
 }
@@ -50,6 +51,12 @@ void ServerLink::followReports() {
 haptic_bridge::LinkStatus ServerLink::follow(std::uint32_t epoch) {
     followReports();
     haptic_bridge::LinkStatus status = client_->link();
+    if (const bool loads = status.link == haptic_bridge::Link::loading; loads && status.loaded != loaded_) {
+        loaded_ = status.loaded;
+        const double share = static_cast<double>(loaded_) / haptic_bridge::Loading::kAll;
+        host::emitEvent(
+            "link", {{"state", base::nameOf(status.link)}, {"epoch", epoch}, {"server", address()}, {"share", share}});
+    }
     if (status.changes != changes_) {
         changes_ = status.changes;
         host::emitEvent("link", {{"state", base::nameOf(status.link)}, {"epoch", epoch}, {"server", address()}});

@@ -73,6 +73,7 @@ private:
     haptic_bridge::LinkClock now_;
     std::unique_ptr<haptic_bridge::Client> client_;
     std::uint64_t changes_ = 0;                  // LinkStatus::changes that was printed last
+    std::uint32_t loaded_ = 0;                   // LinkStatus::loaded that was reported last
     haptic_bridge::ForceShare share_;            // the whole force until an operator sets it
     ServerTicks ticks_;                          // of all clients
     std::vector<lockstep::Fault> drills_;        // faults that wait for a link

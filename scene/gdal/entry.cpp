@@ -90,9 +90,7 @@ double whiteOf(const GdalRaster& raster) {
 }
 
 void ask(const RasterCheck& check, const GdalRaster& raster) {
-    if (check) {
-        check(raster.columns(), raster.rows(), raster.complete());
-    }
+    check(raster.columns(), raster.rows(), raster.complete());
 }
 
 class GdalImporter final : public Importer {
@@ -104,7 +102,7 @@ public:
         grid.units = described.units;
         grid.origins = described.origins;
         ask(check, raster);
-        grid.heights = raster.pixels();
+        grid.heights = raster.pixels(check);
         setPlace(raster, grid);
         grid.noData = raster.noData();
         grid.countHeightsInLengths();
@@ -130,7 +128,7 @@ public:
         EsriGrid grid = gridOf(raster);
         ask(check, raster);
         grid.cellSize = 1;
-        grid.heights = raster.pixels();
+        grid.heights = raster.pixels(check);
         for (double& height : grid.heights) {
             height /= white;
         }
@@ -165,7 +163,7 @@ public:
 }  // namespace
 }  // namespace scene
 
-extern "C" const scene::Importer* sandwallImport5() {
+extern "C" const scene::Importer* sandwallImport6() {
     static const scene::GdalImporter kImporter;
     return &kImporter;
 }

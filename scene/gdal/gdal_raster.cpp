@@ -172,13 +172,20 @@ bool GdalRaster::complete() const {
     return whole && !isSignedByte() && (GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0;
 }
 
-std::vector<double> GdalRaster::numbers() const {
+std::vector<double> GdalRaster::numbers(const RasterCheck& check) const {
     if (isPng()) {
         return greysOfPng(name_, columns(), rows());
     }
     std::vector<double> numbers(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()));
-    if (GDALRasterIO(band_, GF_Read, 0, 0, columns(), rows(), numbers.data(), columns(), rows(), GDT_Float64, 0, 0) !=
-        CE_None) {
+    GDALRasterIOExtraArg more;
+    INIT_RASTERIO_EXTRA_ARG(more);
+    more.pfnProgress = [](double share, const char* /*message*/, void* to) {
+        static_cast<const RasterCheck*>(to)->read(share);
+        return TRUE;
+    };
+    more.pProgressData = const_cast<RasterCheck*>(&check);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    if (GDALRasterIOEx(band_, GF_Read, 0, 0, columns(), rows(), numbers.data(), columns(), rows(), GDT_Float64, 0, 0,
+                       &more) != CE_None) {
         failToRead();
     }
     if (isSignedByte()) {
@@ -189,8 +196,8 @@ std::vector<double> GdalRaster::numbers() const {
     return numbers;
 }
 
-std::vector<double> GdalRaster::pixels() const {
-    std::vector<double> pixels = numbers();
+std::vector<double> GdalRaster::pixels(const RasterCheck& check) const {
+    std::vector<double> pixels = numbers(check);
     mask(pixels);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         pixels[i] = heightOf(pixels[i]);

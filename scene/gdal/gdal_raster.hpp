@@ -40,7 +40,8 @@ public:
     /// NaN.
     [[nodiscard]] bool complete() const;
     /// Returns the rows in the file's order, with scale and offset applied. A pixel without data is NaN.
-    [[nodiscard]] std::vector<double> pixels() const;
+    /// Calls check.read().
+    [[nodiscard]] std::vector<double> pixels(const RasterCheck& check) const;
     [[noreturn]] void fail(const std::string& message) const;
 
 private:
@@ -52,7 +53,7 @@ private:
     [[nodiscard]] bool isSignedByte() const;
     [[nodiscard]] double heightOf(double number) const;
     /// Returns the numbers of the band as the file holds them.
-    [[nodiscard]] std::vector<double> numbers() const;
+    [[nodiscard]] std::vector<double> numbers(const RasterCheck& check) const;
     void mask(std::vector<double>& pixels) const;
     [[noreturn]] void failToRead() const;
 

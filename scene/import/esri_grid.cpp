@@ -125,15 +125,14 @@ EsriGrid readEsriText(base::TextReader& text, const RasterCheck& check, std::siz
     EsriGrid grid;
     grid.file = text.file();
     readHeader(text, grid);
-    if (check) {
-        check(grid.columns, grid.rows, !grid.noData);
-    }
+    check(grid.columns, grid.rows, !grid.noData);
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
     grid.heights.reserve(std::min(cells, mostHeights));
     for (std::size_t i = 0; i < cells; ++i) {
         grid.heights.push_back(heightOf(text, grid));
         if (i % static_cast<std::size_t>(grid.columns) == 0) {
             grid.lines.push_back(text.line());
+            check.read(static_cast<double>(i) / static_cast<double>(cells));
         }
     }
     if (!text.nextWord().empty()) {

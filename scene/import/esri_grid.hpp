@@ -6,6 +6,8 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/text_reader.hpp"
@@ -52,9 +54,35 @@ struct EsriGrid {
     [[noreturn]] void fail(int column, int rowFromSouth, const std::string& message) const;
 };
 
-/// Called with the size of a raster before its pixels are read. It throws to refuse the raster. `complete` says that
-/// the header marks no number as no data, so that every pixel has a height.
-using RasterCheck = std::function<void(int columns, int rows, bool complete)>;
+/// Calls of a program while a raster is read. Each may be empty.
+class RasterCheck {
+public:
+    /// Called with the size before the pixels are read. It throws to refuse the raster. `complete` says that the header
+    /// marks no number as no data, so that every pixel has a height.
+    using Size = std::function<void(int columns, int rows, bool complete)>;
+    /// Called with the part of the pixels that is read, 0 to 1. It must not throw.
+    using Progress = std::function<void(double share)>;
+
+    RasterCheck() = default;
+    template <class Function>
+    requires std::is_convertible_v<Function, Size> RasterCheck(Function size, Progress progress = {})
+        : size_(std::move(size)), progress_(std::move(progress)) {}
+
+    void operator()(int columns, int rows, bool complete) const {
+        if (size_) {
+            size_(columns, rows, complete);
+        }
+    }
+    void read(double share) const {
+        if (progress_) {
+            progress_(share);
+        }
+    }
+
+private:
+    Size size_;
+    Progress progress_;
+};
 
 /// Reads an ESRI ASCII grid. `check` may be empty. Cells that are not square have dx and dy in place of cellsize, as
 /// GDAL writes them. `mostHeights` bounds the memory that the header alone makes it allocate [height]. Throws

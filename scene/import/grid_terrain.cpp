@@ -6,9 +6,13 @@
 namespace scene {
 
 void layTerrain(const EsriGrid& grid, const std::function<std::int32_t(double height)>& unitsOf,
-                sand::HeightField& field, std::shared_ptr<sand::Ground>& ground) {
+                sand::HeightField& field, std::shared_ptr<sand::Ground>& ground,
+                const std::function<void(double share)>& laid) {
     std::int32_t lowest = sand::kMaxHeight;
     for (int row = 0; row < grid.rows; ++row) {
+        if (laid) {
+            laid(static_cast<double>(row) / grid.rows);
+        }
         for (int column = 0; column < grid.columns; ++column) {
             if (!grid.isNoData(column, row)) {
                 const std::int32_t units = unitsOf(grid.at(column, row));

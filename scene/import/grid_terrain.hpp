@@ -16,7 +16,9 @@ namespace scene {
 ///
 /// @param unitsOf  Returns a height of the raster in the field's units. It may throw.
 /// @param ground   Gets the walls. It is created if it is null and there are walls.
+/// @param laid     Called with the part of the rows that is filled, 0 to 1. It may be empty.
 void layTerrain(const EsriGrid& grid, const std::function<std::int32_t(double height)>& unitsOf,
-                sand::HeightField& field, std::shared_ptr<sand::Ground>& ground);
+                sand::HeightField& field, std::shared_ptr<sand::Ground>& ground,
+                const std::function<void(double share)>& laid = {});
 
 }  // namespace scene

@@ -170,9 +170,7 @@ EsriGrid readGsf(const std::filesystem::path& file, const RasterCheck& check) {
         throw base::InputError(fmt::format("{}: {} x {} pixels are {} bytes, but {} follow the header", file.string(),
                                            grid.columns, grid.rows, cells * sizeof(float), behind));
     }
-    if (check) {
-        check(grid.columns, grid.rows, false);  // any number may be NaN
-    }
+    check(grid.columns, grid.rows, false);  // any number may be NaN
     readHeights(stream, grid);
     grid.warnings = undeclaredNoData(grid, "if it does, mask these pixels in Gwyddion");
     return grid;

@@ -70,7 +70,7 @@ inline constexpr double kRasterBytesPerPixel = 16;
 inline constexpr double kMostRasterBytes = 4294967296.0;
 
 /// Symbol that the module defines, with C linkage. It returns the one object, which is never deleted.
-inline constexpr const char* kImportSymbol = "sandwallImport5";
+inline constexpr const char* kImportSymbol = "sandwallImport6";
 using GetImporter = const Importer*();
 
 /// Loads sandwall-import.so from the folder of this program. Returns the same object at every call. Only this function

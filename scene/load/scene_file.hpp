@@ -8,8 +8,8 @@
 
 namespace scene {
 
-/// Checks that are called before the memory of a scene is taken. Both throw if the scene does not fit. Either may be
-/// empty.
+/// Checks that are called before the memory of a scene is taken, and the progress of its reading. The checks throw if
+/// the scene does not fit. Each may be empty.
 struct SizeChecks {
     /// Receives the size of a raster file before its pixels are read. The program holds all pixels while it reads them.
     std::function<void(int columns, int rows)> raster{};
@@ -19,6 +19,8 @@ struct SizeChecks {
     /// pixels are read. For other rasters, it is after the edges without data have been cut off. It is not called for a
     /// terrain of points, which has no field.
     std::function<void(const sand::FieldSize& size)> field{};
+    /// Receives the part of the terrain that has been read, 0 to 1. It must not throw.
+    std::function<void(double share)> progress{};
 };
 
 /// Reads a scene file. Throws base::InputError with file, line and key. An error in a DEM names the DEM's line.

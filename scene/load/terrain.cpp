@@ -23,6 +23,8 @@
 namespace scene {
 namespace {
 
+constexpr double kPixels = 0.6;  // part of the time of a raster that its pixels take; their heights take the rest
+
 sand::HeightField levelField(const host::TomlTable& file, const SizeChecks& checks) {
     const host::TomlTable field = file.requiredTable("field");
     const int columns = field.integerOr("columns", 512, 1, sand::kMaxSide);
@@ -105,7 +107,13 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
                              std::optional<EsriGrid>& survey, std::shared_ptr<sand::Ground>& ground,
                              const SizeChecks& checks) {
     AskedBeforeHeights asked(file, terrain, checks);
-    const TerrainSource source = readSource(file, terrain, kind, std::ref(asked));
+    const auto report = [&checks](double share) {
+        if (checks.progress) {
+            checks.progress(share);
+        }
+    };
+    const TerrainSource source =
+        readSource(file, terrain, kind, RasterCheck(std::ref(asked), [&](double share) { report(kPixels * share); }));
     scene.warnings.insert(scene.warnings.end(), source.warnings.begin(), source.warnings.end());
     if (source.statement) {
         scene.statements->push_back(*source.statement);
@@ -138,7 +146,7 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     const auto unitsOf = [&](double height) {
         return heightUnits(terrain, key, height - datum, field.unit(), adviceFor(height));
     };
-    layTerrain(grid, unitsOf, field, ground);
+    layTerrain(grid, unitsOf, field, ground, [&](double share) { report(kPixels + (1 - kPixels) * share); });
     return field;
 }
 

@@ -21,12 +21,12 @@ namespace described {
 using Types = std::tuple<
     // messages of the link
     haptic_bridge::Identity, haptic_bridge::Hello, haptic_bridge::Challenge, haptic_bridge::Welcome,
-    haptic_bridge::Refusal, haptic_bridge::Proof, haptic_bridge::PositionGreeting, haptic_bridge::ForceShare,
-    haptic_bridge::StartMessage, haptic_bridge::State, haptic_bridge::Shown, haptic_bridge::FrameCost,
-    haptic_bridge::TimingEcho, haptic_bridge::Ping, haptic_bridge::EditRequest, haptic_bridge::CatchUp,
-    haptic_bridge::Ready, haptic_bridge::NeedState, haptic_bridge::StepMessage, haptic_bridge::TimingTest,
-    haptic_bridge::Pong, haptic_bridge::TickPiece, haptic_bridge::Position, haptic_bridge::Bye, haptic_bridge::Report,
-    haptic_bridge::TrackHeader,
+    haptic_bridge::Refusal, haptic_bridge::Proof, haptic_bridge::Loading, haptic_bridge::PositionGreeting,
+    haptic_bridge::ForceShare, haptic_bridge::StartMessage, haptic_bridge::State, haptic_bridge::Shown,
+    haptic_bridge::FrameCost, haptic_bridge::TimingEcho, haptic_bridge::Ping, haptic_bridge::EditRequest,
+    haptic_bridge::CatchUp, haptic_bridge::Ready, haptic_bridge::NeedState, haptic_bridge::StepMessage,
+    haptic_bridge::TimingTest, haptic_bridge::Pong, haptic_bridge::TickPiece, haptic_bridge::Position,
+    haptic_bridge::Bye, haptic_bridge::Report, haptic_bridge::TrackHeader,
     // files
     journal::FileOrigin, master::Checkpoint, master::SandPlace, master::SavedSand, journal::JournalHeader,
     journal::JournalFrame, journal::JournalEnd, journal::JournalResumed, journal::JournalTicks, journal::JournalDoubt,

@@ -53,6 +53,7 @@ void writeWire(Folder folder) {
                                    Welcome{identity, 60, Role::watch, {4}},
                                    CatchUp{false, {step(1), step(2)}},
                                    CatchUp{true, {step(3)}},
+                                   Loading{500, {6}},
                                    PositionGreeting{kProtocolVersion, "glove", {5}},
                                    Refusal{RefusalCode::scene, "no"},
                                    StartMessage{1, 2, 3},

@@ -40,7 +40,8 @@ Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_
                               TickPiece{base::Bytes(50, 1)},
                               PositionGreeting{kProtocolVersion, "glove"},
                               Position{0, 0, 0, 0, true},
-                              CatchUp{true, {step, step}}}) {
+                              CatchUp{true, {step, step}},
+                              Loading{300, {8}}}) {
         real_.push_back(encode(message));
     }
     last_ = real_.front();

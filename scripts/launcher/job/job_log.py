@@ -54,6 +54,8 @@ class JobLog:
         self.hand = None  # time [s] of the last linked hand; before the first link, of the first report without a server
         self.linked = None  # time by the monotonic clock [s] of the last event about a hand that was linked or streams
         self.force = None  # share of the force that an operator has set in this try, 0 to 1
+        self.loads = False  # whether the server reads its scene, as the master has heard
+        self.loaded = 0.0  # the largest part of its scene that the server has read, 0 to 1
         self.refused = False  # whether the last attempt to link ended with a refusal by server or master
 
     def open_ranks(self, ranks):
@@ -121,6 +123,14 @@ class JobLog:
                 self.refused = False
         elif name == "link" and event.get("state") in ("linked", "streaming"):
             self.linked = time.monotonic()
+        elif name == "link" and event.get("state") == "loading":
+            self.loads = True
+            share = event.get("share")
+            if isinstance(share, (int, float)) and self.loaded < share <= 1:  # only progress counts
+                self.loaded, self.hand = share, None
+        elif name == "link" and self.loads and event.get("state") in ("connecting", "lost"):
+            self.loads = False
+            self.miss_hand()
         elif name == "link" and event.get("state") == "refused":
             self.hand, self.refused = None, True  # the server answers, so it does not hang, and a restart would not help
         elif name == "without_hand" and event.get("reason") == "no_server":

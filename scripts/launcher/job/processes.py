@@ -17,8 +17,10 @@ from base.process_marks import marked
 from job.job_stream import LIBC
 from job.mpirun_end import EndWatch
 
-SERVER_START_SECONDS = 20
+SERVER_START_SECONDS = 20  # until the server listens, which it does before it reads its scene
+SERVER_READY_SECONDS = 0.4  # the time that the server gets to read a small scene, so that its complaints come before the job
 ORDERLY_END_SECONDS = 120  # pictures of a large wall take their time
+START_END_SECONDS = 1.5  # before the first frame, when nothing must be kept
 KILL_SECONDS = 5
 STUCK_STATUS = 1  # of a job whose mpirun had to be killed because it did not end after its last process
 CRASHES = (signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS)
@@ -79,6 +81,9 @@ class StopSignals:
 class HapticServer:
     """The haptic server of a session on this machine. All its starts listen on the same port.
 
+    An error in the scene is not printed by the server, because the master reads the same scene and prints it:
+    scene_error() has it.
+
     `command_at(address, start)` returns the command for an address to listen at and the number of the start. Only the main
     thread may start the server, because the kernel kills a server that still begins when the thread that started it ends.
     """
@@ -86,14 +91,18 @@ class HapticServer:
     def __init__(self, command_at, folder):
         self.command_at = command_at
         self.port_file = pathlib.Path(folder) / "port"
+        self.ready_file = pathlib.Path(folder) / "ready"
+        self.error_file = pathlib.Path(folder) / "scene_error"
         self.port = 0
         self.starts = 0
         self.process = None
 
     def start(self):
         self.starts += 1
-        self.port_file.unlink(missing_ok=True)
-        command = [*self.command_at(f"127.0.0.1:{self.port}", self.starts), "--port-file", str(self.port_file), "--die-with-parent"]
+        for file in (self.port_file, self.ready_file, self.error_file):
+            file.unlink(missing_ok=True)
+        command = [*self.command_at(f"127.0.0.1:{self.port}", self.starts), "--listening-file", str(self.port_file),
+                   "--port-file", str(self.ready_file), "--scene-error-file", str(self.error_file), "--die-with-parent"]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                         start_new_session=True, preexec_fn=die_with(os.getpid()))
 
@@ -101,17 +110,33 @@ class HapticServer:
         """Returns whether the server listens since its last start."""
         return self.port_file.exists()
 
+    def is_ready(self):
+        """Returns whether the server has read its scene since its last start."""
+        return self.ready_file.exists()
+
+    def scene_error(self):
+        """Returns the line with which the server has refused the scene, or None."""
+        try:
+            return self.error_file.read_text(errors="replace").strip() or None
+        except FileNotFoundError:
+            return None
+
     def address(self):
-        """Waits until the server listens, and returns HOST:PORT. Throws BadInput after SERVER_START_SECONDS."""
-        deadline = time.monotonic() + SERVER_START_SECONDS
-        while time.monotonic() < deadline:
+        """Waits until the server listens and has had the time for a small scene, and returns HOST:PORT.
+
+        Throws BadInput after SERVER_START_SECONDS, or if the server has refused the scene.
+        """
+        began = time.monotonic()
+        while not self.listens() or (not self.is_ready() and time.monotonic() < began + SERVER_READY_SECONDS):
             if self.process.poll() is not None:
+                if error := self.scene_error():
+                    raise BadInput(error)
                 raise SystemExit(self.process.returncode if self.process.returncode > 0 else 1)  # the server has printed the reason
-            if self.listens():
-                self.port = int(self.port_file.read_text())
-                return f"127.0.0.1:{self.port}"
+            if not self.listens() and time.monotonic() > began + SERVER_START_SECONDS:
+                raise BadInput(f"the haptic server did not listen within {SERVER_START_SECONDS} s")
             time.sleep(0.01)
-        raise BadInput(f"the haptic server did not listen within {SERVER_START_SECONDS} s")
+        self.port = int(self.port_file.read_text())
+        return f"127.0.0.1:{self.port}"
 
     def stop(self):
         """Asks the server to end, and kills it after 5 s."""
@@ -145,6 +170,7 @@ class Job:
         self.guard = Guard(self.process.pid, self.mark, log.outlets() if log else [])
         self.deadline = None
         self.asked = self.terminated = self.stuck = False
+        self.brief = False  # whether the job was asked to stop before its first frame
         self.end_watch = EndWatch(self.process.pid)
 
     def ask(self, command):
@@ -161,11 +187,20 @@ class Job:
             pass
 
     def stop(self):
-        """Asks the job to end in order. look() ends it by signals after ORDERLY_END_SECONDS."""
+        """Asks the job to end in order. look() ends it by signals after ORDERLY_END_SECONDS, or sooner before the first frame."""
         if not self.asked:
             self.asked = True
-            self.deadline = time.monotonic() + ORDERLY_END_SECONDS
+            self.brief = self.starts()
+            self.deadline = time.monotonic() + (START_END_SECONDS if self.brief else ORDERLY_END_SECONDS)
             self.ask("stop")
+
+    def ended_before_its_first_frame(self):
+        """Returns whether signals have ended the job because it was asked to stop before its first frame."""
+        return self.brief and self.terminated
+
+    def starts(self):
+        """Returns whether the job has shown no frame yet, as far as its log tells."""
+        return self.log is not None and self.log.frame is None
 
     def look(self, stop):
         """Returns the exit status, or None while the job runs. Ends the job in order after one signal, at once after two."""
@@ -187,6 +222,9 @@ class Job:
             print_line("stopping; finishing journal and pictures; press Ctrl-C again to kill")
             events.emit("stopping")
             self.stop()
+        if self.brief and not self.starts():  # the first frame was shown meanwhile, so that there is something to keep
+            self.brief = False
+            self.deadline = max(self.deadline, now + ORDERLY_END_SECONDS)
         if self.deadline is None and self.log and self.log.ending:
             self.deadline = now + GONE_SECONDS  # mpirun waits for a host that has gone
         if self.deadline is not None and not self.terminated and (stop.count > 1 or now > self.deadline):

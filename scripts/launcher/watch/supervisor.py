@@ -160,7 +160,12 @@ class Supervisor:
             self.patience.renew()
             if status in (0, BAD_INPUT) or not self.supervised or self.stop.count > 0 or self.gave_up:
                 self.note_last_failure(status, log)
-                return FAILED if self.gave_up else exit_status(status)
+                if self.gave_up:
+                    return BAD_INPUT if self.watch.refuses else FAILED
+                if self.job.ended_before_its_first_frame():
+                    print_line("stopped before the first frame")
+                    return 0
+                return exit_status(status)
             if (content_of(self.out / "failure.json") or log.failure or {}).get("what") in ENDED_IN_ORDER:
                 log.close()
                 return FAILED  # the master has printed why the session is not good
@@ -181,7 +186,7 @@ class Supervisor:
     def note_last_failure(self, status, log):
         """Writes down the failure of a job that is not started again. A job that the user has killed has not failed."""
         told = content_of(self.out / "failure.json")
-        if status in (0, BAD_INPUT) or self.stop.count > 1 or self.gave_up or told.get("what") in ENDED_IN_ORDER:
+        if self.job.ended_before_its_first_frame() or status in (0, BAD_INPUT) or self.stop.count > 1 or self.gave_up or told.get("what") in ENDED_IN_ORDER:
             return
         failure = failure_of_job(status, log, self.hosts, told) if log else failure_without_log(status, told, self.hosts)
         self.failed.add(failure, restarted=False)
@@ -207,6 +212,8 @@ class Supervisor:
                 self.mark_restart(None)
             if self.watch and not self.job.asked:
                 self.look_after_server(log)
+        if self.watch:
+            self.watch.tell(status)
         if self.supervised:
             self.input.job = None
             self.job.clear()

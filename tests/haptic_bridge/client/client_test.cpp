@@ -167,8 +167,9 @@ TEST(Client, StopsThoughAnotherTimerBecomesDueMeanwhile) {
     });
     Client client(server.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::offered)) << client.link().message;
-    client.grant(1, 10, 0, base::Bytes(std::size_t{256} << 20U), {});
-    ASSERT_TRUE(eventually([&] { return needed.load(); }));
+    client.grant(1, 10, 0);
+    ASSERT_TRUE(eventually([&] { return needed.load() && client.needsState(); }));
+    client.giveState(base::Bytes(std::size_t{256} << 20U));
     std::this_thread::sleep_for(10ms);
     // The server reads no more messages until `over` is set. A stop that waited for the server would not return.
     const auto stopped = std::async(std::launch::async, [&] { client.stop(); });

@@ -42,7 +42,7 @@ inline bool linkUp(FakeServer::Connection& connection) {
 /// Grants the hand once the server offers it. The first step has the number after `number`.
 inline void grantWhenOffered(haptic_bridge::Client& client, std::uint32_t epoch, std::uint64_t number) {
     ASSERT_TRUE(reaches(client, haptic_bridge::Link::offered)) << client.link().message;
-    client.grant(epoch, number, 0, {});
+    client.grant(epoch, number, 0);
 }
 
 }  // namespace test

@@ -132,7 +132,7 @@ sand::Step numbered(std::uint64_t number, std::uint32_t epoch = 1) {
 Grant::Arrival arrival(Grant& grant, sand::Step step) { return grant.arrived(step); }
 
 TEST(Grant, JudgesStepsByEpochAndNumber) {
-    Grant grant({3, 10, 0}, {}, {});
+    Grant grant({3, 10, 0}, {});
     EXPECT_EQ(arrival(grant, numbered(11, 2)), Grant::Arrival::foreign);
     EXPECT_EQ(arrival(grant, numbered(10, 3)), Grant::Arrival::stale);
     EXPECT_EQ(arrival(grant, numbered(12, 3)), Grant::Arrival::afterGap);
@@ -160,7 +160,7 @@ using samples::withNumber;
 
 // An edit goes into the journal, and may be 192 MiB of sand.
 TEST(Grant, TakesAnEditOnceAndOnlyIfItWasAskedFor) {
-    Grant grant({1, 0, 0}, {}, {});
+    Grant grant({1, 0, 0}, {});
     const sand::Edit load = withNumber(5, sand::Edit::loaded({1, 2, 3}));
     EXPECT_EQ(arrival(grant, 1, load), Grant::Arrival::unasked);
     EXPECT_EQ(arrival(grant, 1, withNumber(1, sand::Edit::settle)), Grant::Arrival::unasked);
@@ -176,7 +176,7 @@ TEST(Grant, TakesAnEditOnceAndOnlyIfItWasAskedFor) {
 
 // So no server can change an edit, and 192 MiB are never compared.
 TEST(Grant, GivesAStepTheEditThatWasAskedFor) {
-    Grant grant({1, 0, 0}, {}, {});
+    Grant grant({1, 0, 0}, {});
     const sand::Edit load = withNumber(7, sand::Edit::loaded({1, 2, 3}));
     const sand::Edit tune = withNumber(8, sand::Edit::tuned({7, 11, 13, {.radius = 17}}));
     grant.asked(load);
@@ -191,7 +191,7 @@ TEST(Grant, GivesAStepTheEditThatWasAskedFor) {
 }
 
 TEST(Grant, TellsEqualEditsApart) {
-    Grant grant({1, 0, 0}, {}, {});
+    Grant grant({1, 0, 0}, {});
     for (const std::uint64_t number : {1U, 2U, 3U}) {
         grant.asked(withNumber(number, sand::Edit::loaded({1})));
     }
@@ -203,7 +203,7 @@ TEST(Grant, TellsEqualEditsApart) {
 }
 
 TEST(Grant, LetsAnEditReplaceTheOneBeforeIt) {
-    Grant grant({1, 0, 0}, {}, {});
+    Grant grant({1, 0, 0}, {});
     grant.asked(withNumber(1, sand::Edit::loaded({1})));
     grant.asked(withNumber(2, sand::Edit::settle));
     EXPECT_EQ(arrival(grant, 1, withNumber(2, sand::Edit::settle)), Grant::Arrival::next);
@@ -216,24 +216,44 @@ TEST(Grant, HandsOverTheStepsThatAreLackedOnceAndThenTheSand) {
     for (std::uint64_t number = 1; number <= kMaxCatchUp + 3; ++number) {
         ring.add(numbered(number));
     }
-    Grant grant({2, kMaxCatchUp + 3, 0}, {1, 2, 3}, ring);
-    const auto steps = grant.handOver({0, 77});
+    Grant grant({2, kMaxCatchUp + 3, 0}, ring);
+    const auto steps = grant.catchUps({0, 77});
     ASSERT_EQ(steps.size(), 2U);
-    EXPECT_FALSE(std::get<CatchUp>(steps[0]).last);
-    EXPECT_EQ(std::get<CatchUp>(steps[0]).steps.size(), kMaxCatchUp);
-    EXPECT_TRUE(std::get<CatchUp>(steps[1]).last);
-    EXPECT_EQ(std::get<CatchUp>(steps[1]).steps.back().number, kMaxCatchUp + 3);
+    EXPECT_FALSE(steps[0].last);
+    EXPECT_EQ(steps[0].steps.size(), kMaxCatchUp);
+    EXPECT_TRUE(steps[1].last);
+    EXPECT_EQ(steps[1].steps.back().number, kMaxCatchUp + 3);
+    EXPECT_FALSE(grant.awaitsState());
     ASSERT_TRUE(grant.mayHandOver());
-    const auto sand = grant.handOver({0, 77});
-    ASSERT_EQ(sand.size(), 1U) << "the same steps would fail again, so the whole sand is sent";
-    EXPECT_EQ(std::get<State>(sand[0]).bytes, (base::Bytes{1, 2, 3}));
+    EXPECT_TRUE(grant.catchUps({0, 77}).empty()) << "the same steps would fail again";
+    EXPECT_TRUE(grant.awaitsState());
     EXPECT_FALSE(grant.mayHandOver());
+    grant.stateGiven();
+    EXPECT_FALSE(grant.awaitsState());
 }
 
 TEST(Grant, HandsOverTheSandWhenTheStepsAreNotKnown) {
-    Grant grant({2, 10, 0}, {9}, {});
-    EXPECT_EQ(std::get<State>(grant.handOver({3, 1}).front()).bytes, base::Bytes{9});
+    Grant grant({2, 10, 0}, {});
+    EXPECT_TRUE(grant.catchUps({3, 1}).empty());
+    EXPECT_TRUE(grant.awaitsState());
     EXPECT_FALSE(grant.mayHandOver());
+}
+
+// The sand of an earlier grant must not go to the server of a later one.
+TEST(Shelf, NeedsTheSandUntilItIsGivenOrTheLinkChanges) {
+    Shelf shelf;
+    shelf.askForState();
+    EXPECT_FALSE(shelf.needsState()) << "the link is not granting";
+    shelf.setStatus(Link::offered, "");
+    ASSERT_TRUE(shelf.beginGranting());
+    shelf.askForState();
+    shelf.setStatus(Link::granting, "handing over");
+    EXPECT_TRUE(shelf.needsState());
+    EXPECT_TRUE(shelf.beginGivingState());
+    EXPECT_FALSE(shelf.beginGivingState()) << "it is given once";
+    shelf.askForState();
+    shelf.setStatus(Link::lost, "");
+    EXPECT_FALSE(shelf.beginGivingState());
 }
 
 }  // namespace

@@ -119,6 +119,20 @@ TEST(Protocol, BoundsTheLengthBeforeTheBytesCome) {
     EXPECT_THROW((void)lengthOnly(kMaxState + 1, kStateType, true), base::FormatError);
     EXPECT_FALSE(lengthOnly(kMaxState, kStateType, true));
     EXPECT_FALSE(lengthOnly(kMaxMessage, kByeType, false));
+    constexpr std::uint8_t kLoadType = 16;
+    const auto beyond = [](std::uint32_t length, std::uint8_t type, std::size_t most) {
+        base::ByteWriter writer;
+        writer.put(length);
+        writer.put(type);
+        MessageReader reader;
+        reader.expectLoads(true);
+        reader.expectState(true, most);
+        reader.feed(writer.bytes());
+        return reader.next();
+    };
+    EXPECT_FALSE(beyond(kMaxState + 5, kStateType, kMaxState + 5)) << "a state of a large field";
+    EXPECT_THROW((void)beyond(kMaxState + 6, kStateType, kMaxState + 5), base::FormatError);
+    EXPECT_THROW((void)beyond(kMaxState + 5, kLoadType, kMaxState + 5), base::FormatError);
 }
 
 TEST(Protocol, TakesAStateOnceAndOnlyWhenExpected) {

@@ -56,7 +56,8 @@ inline std::vector<Message> oneOfEach() {
             Position{-7, 0.5, -0.25, 1.5, true},
             Challenge{identity, {6}},
             Proof{{7}},
-            CatchUp{true, {someStep(), someStep()}}};
+            CatchUp{true, {someStep(), someStep()}},
+            Loading{730, {1, 2, 3}}};
 }
 
 }  // namespace haptic_bridge

@@ -101,7 +101,7 @@ TEST_F(LetGo, AFailedSandThreadEndsTheServerWithZero) {
     const auto busy = boost::asio::make_work_guard(io);
     channel_->failure.onFailure([&io] { io.stop(); });
     SandThread sandThread(
-        scene_, Pace::realtime, *hand_, *channel_,
+        sand::Replica(scene_), Pace::realtime, *hand_, *channel_,
         {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
          [this](std::uint32_t, const base::Bytes&, std::uint64_t) {
              if (pushed_.pressed) {

@@ -30,7 +30,7 @@ public:
                                                             settings, scene),
               haptic_bridge::HandSettings::Datum::level)),
           deviceHand_(*hand_, *channel_, scene.rules.stepsPerSecond, [this] { return now_; }),
-          maker_(scene, deviceHand_, output(), {}, [this] { return now_; }),
+          maker_(sand::Replica(scene), deviceHand_, output(), [this] { return now_; }),
           sand_(scene),
           ceiling_(ceiling) {
         setShare(std::nullopt);

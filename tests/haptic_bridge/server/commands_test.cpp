@@ -54,7 +54,7 @@ class BusySandThread {
 public:
     BusySandThread()
         : hand_(scene_, openDevice("script:gis", HandSettings::parse({}), scene_), HandSettings::Datum::surface),
-          thread_(scene_, Pace::realtime, hand_, *channel_,
+          thread_(sand::Replica(scene_), Pace::realtime, hand_, *channel_,
                   {[](std::uint32_t) {},
                    [this](std::uint32_t, NeedState) {
                        busy_.set_value();

@@ -71,7 +71,7 @@ protected:
     std::int64_t now_ = 1'000'000'000;
     std::vector<StepMessage> steps_;
     WaitingHand hand_{scene_.rules.stepsPerSecond};
-    StepMaker maker_{scene_, hand_, into(steps_), {}, [this] { return now_; }};
+    StepMaker maker_{sand::Replica(scene_), hand_, into(steps_), [this] { return now_; }};
 };
 
 TEST_F(Parts, TheMovementOfTheHandWaitsUntilAllIsPaid) {
@@ -167,7 +167,7 @@ TEST(PartsOfTheFastPace, LeaveTheSandOfWholeSteps) {
     const auto channel = std::make_unique<HandChannel>();
     VirtualHand hand(tick, *channel, scene.rules.stepsPerSecond);
     std::vector<StepMessage> steps;
-    StepMaker maker(scene, hand, into(steps));
+    StepMaker maker(sand::Replica(scene), hand, into(steps));
     sand::Replica parts(scene), whole(scene);
     maker.start(1, {1, 0, parts.stateHash(), {}});
     int moved = 0, paid = 0;

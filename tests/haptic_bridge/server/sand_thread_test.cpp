@@ -32,7 +32,7 @@ public:
     Server(const scene::Scene& scene, Pace pace, std::unique_ptr<Device> device)
         : replica_(scene),
           hand_(scene, std::move(device), HandSettings::Datum::surface, Guards::Mode::literal),
-          thread_(scene, pace, hand_, *channel_,
+          thread_(replica_, pace, hand_, *channel_,
                   {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
                    [this](std::uint32_t, const base::Bytes& message, std::uint64_t) { take(message); }}) {}
 
@@ -155,7 +155,7 @@ TEST(SandThread, WhatIsFeltDoesNotAgeWhileStepsAreWithheld) {
     HapticTick hand(scene, openDevice("script:gis", HandSettings::parse({}), scene), HandSettings::Datum::surface);
     HandChannel channel;
     SandThread sandThread(
-        scene, Pace::realtime, hand, channel,
+        sand::Replica(scene), Pace::realtime, hand, channel,
         {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
          [](std::uint32_t, const base::Bytes&, std::uint64_t) {}});
     sandThread.start(1, {1, 0, sand::Replica(scene).stateHash()});

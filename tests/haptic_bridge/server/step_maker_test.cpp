@@ -66,7 +66,7 @@ protected:
     std::vector<std::string> unusable_;
     std::vector<StepMessage> steps_;
     std::vector<Audited> audits_;
-    StepMaker maker_{scene_,
+    StepMaker maker_{sand::Replica(scene_),
                      hand_,
                      {[this](std::uint32_t session) { ready_.push_back(session); },
                       [this](std::uint32_t, NeedState need) { needs_.push_back(need); },
@@ -77,7 +77,6 @@ protected:
                           EXPECT_EQ(edit, steps_.back().step.edit.number);
                       },
                       [this](std::uint32_t, Audited result) { audits_.push_back(result); }},
-                     {},
                      [this] { return now_; }};
 };
 

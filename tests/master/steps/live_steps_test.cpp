@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -262,6 +263,35 @@ TEST_F(LiveStepsTest, AServerThatFailsRightAfterEachLinkIsAskedMoreRarelyEachTim
     EXPECT_GE(std::chrono::steady_clock::now() - began, 1500ms);
     EXPECT_GE(live.counters().links, 3U) << "the server was linked each time";
     EXPECT_TRUE(eventually([&] { return !live.linked() && numbersAlone(live); })) << "the wall continues meanwhile";
+}
+
+// A server that reads a large scene gets as long as it gets further. Then the wall continues without a hand.
+TEST_F(LiveStepsTest, WaitsForAServerThatReadsItsSceneAsLongAsItGetsFurther) {
+    std::atomic<std::uint32_t> done = 10;
+    std::atomic<bool> over = false;
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (!connection.await<haptic_bridge::Hello>()) {
+            return;
+        }
+        while (!over) {
+            connection.send(haptic_bridge::Loading{done});
+            std::this_thread::sleep_for(60ms);
+        }
+    });
+    master::LiveSteps live = stepsFrom(server.address());
+    for (const std::uint32_t read : {10U, 400U, 800U}) {
+        done = read;
+        std::this_thread::sleep_for(200ms);
+        EXPECT_TRUE(show(live).empty()) << "the sand stands still";
+        pass(master::LiveSteps::kLoadingWait - 5);
+        EXPECT_TRUE(show(live).empty()) << read;
+    }
+    done = 300;  // a server that begins again must get further than before
+    std::this_thread::sleep_for(200ms);
+    EXPECT_TRUE(show(live).empty());
+    pass(10);
+    EXPECT_TRUE(showUntil(live, [&] { return numbersAlone(live); }));
+    over = true;
 }
 
 }  // namespace

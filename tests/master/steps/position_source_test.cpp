@@ -40,7 +40,7 @@ protected:
     }
     const scene::Scene scene_ = samples::flatScene(64, 64);
     sand::Replica replica_{scene_};
-    master::PositionSource source_{scene_};
+    master::PositionSource source_{scene_, haptic_bridge::HandSettings::Datum::surface};
     std::int64_t clock_ = 20'000 * kMillisecond;
     std::uint64_t floods_ = 0;
 };

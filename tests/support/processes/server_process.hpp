@@ -168,7 +168,10 @@ struct Wall {
                     for (const auto& left : client.drain(1000)) {
                         apply(left);
                     }
-                    client.grant(++epoch, replica.stepNumber(), replica.stateHash(), replica.encodeState());
+                    client.grant(++epoch, replica.stepNumber(), replica.stateHash());
+                }
+                if (client.needsState()) {
+                    client.giveState(replica.encodeState());
                 }
                 for (const auto& timed : client.drain(steps - replica.stepNumber())) {
                     apply(timed);

@@ -28,8 +28,8 @@ while [ $# -gt 0 ]; do [ "$1" = --out ] && { mkdir -p "$2"; cp "$SUMMARY" "$2/su
 """
 # Dies as soon as it listens.
 SERVER = """#!/bin/sh
-while [ "$1" != --port-file ]; do shift; done
-echo 4711 > "$2.new"; mv "$2.new" "$2"
+while [ "$1" != --listening-file ]; do shift; done
+for file in "$2" "$4"; do echo 4711 > "$file.new"; mv "$file.new" "$file"; done
 sleep 0.3; kill -KILL $$
 """
 

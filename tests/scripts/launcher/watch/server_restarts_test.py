@@ -14,14 +14,21 @@ from supervisor_fixture import Supervised
 from job import job_log, open_mpi
 from watch import supervisor
 
+# Reads its scene as the file `load` of the test says: with the functions `listens` and `ready`.
 SERVER = """#!/bin/bash
 folder=$(dirname "$0")/..
 echo "$*" >> "$folder/servers"
-while [ "$1" != --port-file ]; do [ "$1" = --listen ] && listen=$2; shift; done
+while [ $# -gt 1 ]; do
+    case $1 in --listen) listen=$2;; --listening-file) listening=$2;; --port-file) ready=$2;; --scene-error-file) error=$2;; esac
+    shift
+done
 port=${listen##*:}; [ "$port" = 0 ] && port=4711
 echo $$ > "$folder/server.pid"
-echo $port > "$2.new"; mv "$2.new" "$2"
+write() { echo "$2" > "$1.new"; mv "$1.new" "$1"; }
+listens() { write "$listening" $port; }
+ready() { write "$ready" $port; }
 trap 'exit 0' TERM
+if [ -e "$folder/load" ]; then . "$folder/load"; else listens; ready; fi
 while :; do sleep 0.05; done
 """
 
@@ -30,6 +37,9 @@ class Server(Supervised):
     def setUp(self):
         super().setUp()
         self.script("sandwall-haptic-server", SERVER)
+
+    def loads(self, script):
+        (self.folder / "load").write_text(script + "\n")
 
     def servers(self):
         path = self.folder / "servers"
@@ -107,6 +117,41 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
         self.assertEqual(error.count("the haptic server was killed by SIGKILL; shown: frame 5, step 4"), 3, error)
 
 
+    def test_the_job_starts_beside_a_server_that_reads_a_large_scene(self):
+        self.loads("listens")
+        self.tries("progress 1 1; exit 0")
+        status, _, error = self.ended(["-"], "--device", "script:gis")
+        self.assertEqual((status, len(self.commands()), len(self.servers())), (0, 1, 1), error)
+        self.assertIn("--haptic 127.0.0.1:4711 ", self.commands()[0])
+
+    def test_a_scene_that_the_server_refuses_soon_is_one_line_and_no_job(self):
+        self.loads('listens; write "$error" "scene.toml:3: no"; exit 2')
+        self.tries("exit 0")
+        self.assertEqual(self.ended(["-"], "--device", "script:gis"), (2, "", "sandwall: scene.toml:3: no\n"))
+        self.assertFalse((self.folder / "commands").exists())
+
+    def test_a_scene_that_both_refuse_is_the_masters_line_alone(self):
+        self.loads('listens; sleep 1.5; write "$error" "scene.toml:3: no"; exit 2')
+        self.tries("sleep 2; complain 0 'scene.toml:3: no'; exit 2")
+        self.assertEqual(self.ended(["-"], "--device", "script:gis"), (2, "", "scene.toml:3: no\n"))
+        self.assertEqual(len(self.servers()), 1)
+
+    def test_a_scene_that_the_server_alone_refuses_ends_the_session(self):
+        self.loads('listens; sleep 1.5; write "$error" "scene.toml: it needs more memory"; exit 2')
+        self.tries("sleep 2; progress 1 1; read -r line; echo \"told: $line\"; exit 0")
+        status, printed, error = self.ended(["-"], "--device", "script:gis")
+        self.assertEqual((status, len(self.servers())), (2, 1), error)
+        self.assertIn("told: stop\n", printed)
+        self.assertEqual(error.count("sandwall: scene.toml: it needs more memory\n"), 1, error)
+
+    def test_a_server_that_refuses_its_device_late_is_not_started_again(self):
+        self.loads("listens; sleep 1.5; echo 'sandwall-haptic-server: --device: no' >&2; exit 2")
+        self.tries("progress 1 1; read -r line; exit 0")
+        status, _, error = self.ended(["-"], "--device", "script:gis")
+        self.assertEqual((status, len(self.servers())), (2, 1), error)
+        self.assertEqual(error.count("--device: no"), 1, error)
+
+
 class HungServer(unittest.TestCase):
     """A server that runs but is not linked, with a clock that the test moves."""
 
@@ -119,7 +164,7 @@ class HungServer(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.log = job_log.JobLog(temporary.name, 1, open_mpi.OpenMpi4("4.1.4"))
         self.addCleanup(self.log.close)
-        self.server = mock.Mock(**{"process.poll.return_value": None, "listens.return_value": True})
+        self.server = mock.Mock(**{"process.poll.return_value": None, "is_ready.return_value": True, "scene_error.return_value": None, "starts": 1})
         self.watched = supervisor.Supervisor(temporary.name, None, open_mpi.OpenMpi4("4.1.4"), None, None, None, mock.Mock(restarts=3, restart_window=60), mock.Mock())
         self.watched.watch = self.watched.watch_of(self.server)
 
@@ -163,6 +208,22 @@ class HungServer(unittest.TestCase):
         self.event("without_hand", reason="no_server", epoch=2)
         self.assertFalse(self.wall_goes_on(60))
 
+    def test_one_that_reads_its_scene_is_not_hung(self):
+        self.wall_goes_on(5, "hand linked")
+        self.assertTrue(self.wall_goes_on(11))
+        self.server.is_ready.return_value = False
+        self.end()
+        self.event("link", state="loading", epoch=2, server="x", share=0.1)
+        self.assertFalse(self.wall_goes_on(300))
+        self.event("link", state="lost", epoch=2, server="x")
+        self.assertFalse(self.wall_goes_on(5))
+        self.event("link", state="loading", epoch=2, server="x", share=0.2)
+        self.assertFalse(self.wall_goes_on(300), "it has got further")
+        self.event("link", state="lost", epoch=2, server="x")
+        self.event("link", state="loading", epoch=2, server="x", share=0.2)
+        self.assertFalse(self.wall_goes_on(10))
+        self.assertTrue(self.wall_goes_on(1), "it gets no further")
+
     def test_while_the_wall_stands_nobody_is_hung(self):
         self.wall_goes_on(5, "hand linked")
         self.now += 60
@@ -172,10 +233,10 @@ class HungServer(unittest.TestCase):
     def test_one_that_was_started_again_and_never_answers_is_killed_too(self):
         self.wall_goes_on(5, "hand linked")
         self.assertTrue(self.wall_goes_on(11))
-        self.server.listens.return_value = False
+        self.server.is_ready.return_value = False
         self.end()
-        self.assertFalse(self.wall_goes_on(120), "a server may need a long time to load a large scene before it listens")
-        self.server.listens.return_value = True
+        self.assertFalse(self.wall_goes_on(120), "a server may need a long time to read a large scene")
+        self.server.is_ready.return_value = True
         self.assertFalse(self.wall_goes_on(11))
         self.assertTrue(self.wall_goes_on(1))
 

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/server/loading_answers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "haptic_bridge/server/listen_at.hpp"
+#include "tests/haptic_bridge/link/link_security_fixture.hpp"
+#include "tests/haptic_bridge/link/raw_peer.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+using namespace test;
+using namespace std::chrono_literals;
+
+namespace asio = boost::asio;
+
+/// A server that reads its scene until end().
+class LoadingAnswersTest : public LinkSecurityTest {
+protected:
+    void listen(const std::string& secret = "") {
+        LinkOptions options;
+        options.secretFile = secret;
+        const LinkSecurity security = options.forServer();
+        asio::ip::tcp::acceptor acceptor = listenAt(io_, "127.0.0.1:0", security.proves());
+        port_ = acceptor.local_endpoint().port();
+        answers_ = std::make_unique<LoadingAnswers>(io_, std::move(acceptor), security, [](const std::string&) {});
+    }
+    [[nodiscard]] Address address() const { return {"127.0.0.1", port_}; }
+    /// Ends the loading, and runs what is left on the connections.
+    asio::ip::tcp::acceptor end() {
+        asio::ip::tcp::acceptor acceptor = answers_->end();
+        io_.run_for(1s);
+        return acceptor;
+    }
+    static bool loads(const Client& client, std::uint32_t done) {
+        return eventually([&] { return client.link().link == Link::loading && client.link().loaded == done; });
+    }
+
+    asio::io_context io_;
+    std::uint16_t port_ = 0;
+    std::unique_ptr<LoadingAnswers> answers_;
+};
+
+TEST_F(LoadingAnswersTest, TellHowMuchIsReadAndNeverLess) {
+    listen();
+    answers_->setDone(0.25);
+    const Client client(address(), offerOf(scene_));
+    ASSERT_TRUE(loads(client, 250)) << client.link().message;
+    answers_->setDone(0.1);
+    answers_->setDone(0.5);
+    ASSERT_TRUE(loads(client, 500)) << client.link().message;
+    const asio::ip::tcp::acceptor acceptor = end();
+    EXPECT_TRUE(acceptor.is_open());
+    EXPECT_TRUE(eventually([&] { return client.link().loaded == Loading::kAll; }));
+    EXPECT_TRUE(eventually([&] { return client.link().link != Link::loading; }));
+    EXPECT_EQ(client.lastFailure(), "it says goodbye: its scene is read");
+}
+
+// The server does not know its scene yet, so another one is no reason to refuse a master.
+TEST_F(LoadingAnswersTest, CompareOnlyVersions) {
+    listen();
+    RawPeer other(port_);
+    Hello hello = this->hello();
+    hello.master.sceneName = "another";
+    hello.master.rulesDigest = 1;
+    other.send(hello);
+    const auto answer = other.receive();
+    ASSERT_TRUE(answer && std::holds_alternative<Loading>(*answer));
+    RawPeer newer(port_);
+    hello.master.algorithm += 1;
+    newer.send(hello);
+    EXPECT_NE(newer.refusal().find("algorithm version"), std::string::npos);
+}
+
+TEST_F(LoadingAnswersTest, AskForTheSecretFirst) {
+    listen(both_);
+    RawPeer without(port_);
+    without.send(hello());
+    EXPECT_NE(without.refusal().find("asks for a secret"), std::string::npos);
+    const Client client(address(), offerOf(scene_), this->client(both_));
+    EXPECT_TRUE(eventually([&] { return client.link().link == Link::loading; })) << client.link().message;
+    const std::string wrong = secretFile("wrong", "move " + quoted(kMove) + "-else\n");
+    EXPECT_NE(refusalOf(address(), this->client(wrong)).find("the secret"), std::string::npos);
+}
+
+TEST_F(LoadingAnswersTest, RefuseAllOtherMessages) {
+    listen();
+    RawPeer peer(port_);
+    peer.send(hello());
+    ASSERT_TRUE(peer.receive());
+    peer.send(Ping{5});
+    auto answer = peer.receive();
+    while (answer && std::holds_alternative<Loading>(*answer)) {
+        answer = peer.receive();
+    }
+    ASSERT_TRUE(answer && std::holds_alternative<Pong>(*answer));
+    peer.send(StartMessage{1, 0, 0});
+    answer = peer.receive();
+    while (answer && std::holds_alternative<Loading>(*answer)) {
+        answer = peer.receive();
+    }
+    EXPECT_TRUE(answer && std::holds_alternative<Refusal>(*answer));
+}
+
+TEST_F(LoadingAnswersTest, OnlySoManyPeersMayWait) {
+    constexpr std::size_t kMost = 8;  // docs/protocol.md
+    listen();
+    std::vector<std::unique_ptr<RawPeer>> peers;
+    for (std::size_t i = 0; i < kMost; ++i) {
+        peers.push_back(std::make_unique<RawPeer>(port_));
+        peers.back()->send(hello());
+        const auto answer = peers.back()->receive();
+        ASSERT_TRUE(answer && std::holds_alternative<Loading>(*answer)) << i;
+    }
+    RawPeer more(port_);
+    more.send(hello());
+    EXPECT_NE(more.refusal().find("busy"), std::string::npos);
+}
+
+TEST_F(LoadingAnswersTest, EndWithoutPeersAndWithTheObject) {
+    listen();
+    const asio::ip::tcp::acceptor acceptor = end();
+    EXPECT_TRUE(acceptor.is_open());
+    answers_.reset();
+    listen();
+    answers_.reset();  // as when the scene cannot be read
+}
+
+}  // namespace
