@@ -51,11 +51,12 @@ void setLastWords(const lockstep::Cluster& cluster, const master::ProgramOptions
 int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options) {
     std::optional<master::World> world;
     std::optional<master::MasterSand> sand;
-    const host::WorkerPool pool(options.sandThreads);
-    options.session.executor = pool.lend();
+    std::optional<host::WorkerPool> pool;
     bool sessionOpen = false;
     setLastWords(cluster, options, nullptr);
     try {
+        pool.emplace(options.sandThreads);
+        options.session.executor = pool->lend();
         world.emplace(master::loadWorld(cluster, options));
         setLastWords(cluster, options, &world->wall);
         (void)lockstep::broadcastSession(cluster, world->message);

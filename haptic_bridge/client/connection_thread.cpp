@@ -93,7 +93,7 @@ void Client::Conversation::greet() {
 
 /// Ends the link, because the server has been silent for too long.
 void Client::Conversation::fallSilent() {
-    if (!up()) {  // the server accepted the connection and never greeted
+    if (!up() && shelf.link() != Link::loading) {  // the server accepted the connection and never greeted
         countRefusal(RefusalCode::limit);
     }
     connection_->close(fmt::format("{} for {} s",

@@ -8,8 +8,10 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/link/connection.hpp"
@@ -80,7 +82,7 @@ private:
             end("refuses: " + refusal->text);
         } else if (const auto* bye = std::get_if<Bye>(&message)) {
             end("says goodbye: " + bye->reason);
-            readsScene_ = loading_;
+            readsScene_ = !welcomed_;  // only a server that reads its scene leaves before the Welcome
         } else if (const auto* challenge = std::get_if<Challenge>(&message)) {
             if (const auto proof = handshake_->answer(*challenge)) {
                 connection_->send(*proof);
@@ -165,22 +167,24 @@ private:
 
 int run(const std::string& address, const LinkOptions& options, std::uint64_t lines) {
     const LinkSecurity security = options.forClient(Role::watch);
-    for (bool again = true; again;) {
-        asio::io_context io;
-        Watcher watcher(io, security, lines);
-        watcher.connect(io, Address::parse(address, "server"));
-        asio::signal_set signals(io, SIGINT, SIGTERM);
-        signals.async_wait([&watcher](error_code error, int) {
-            if (!error) {
-                watcher.stop();
-            }
-        });
-        while (!watcher.ended() && io.run_one() > 0) {
+    asio::io_context io;
+    std::vector<std::unique_ptr<Watcher>> watchers;  // earlier ones stay, because their connections still close
+    bool stopped = false;
+    asio::signal_set signals(io, SIGINT, SIGTERM);
+    signals.async_wait([&](error_code error, int) {
+        if (!error) {
+            stopped = true;
+            watchers.back()->stop();
         }
-        again = watcher.mayComeAgain();
-        if (!again && !watcher.ended()->empty()) {
-            throw std::runtime_error(address + ": " + *watcher.ended());
+    });
+    do {
+        watchers.push_back(std::make_unique<Watcher>(io, security, lines));
+        watchers.back()->connect(io, Address::parse(address, "server"));
+        while (!watchers.back()->ended() && io.run_one() > 0) {
         }
+    } while (!stopped && watchers.back()->mayComeAgain());
+    if (const std::string& why = *watchers.back()->ended(); !stopped && !why.empty()) {
+        throw std::runtime_error(address + ": " + why);
     }
     return 0;
 }

@@ -244,7 +244,7 @@ void serve(const ServerOptions& options) {
     host::PhaseProgress progress("read", "reads the scene", print);
     scene::Scene scene = openScene(options, [&](double share) {
         loading.setDone(kScene * share);
-        progress.done(kScene * share);
+        progress.done(share);
     });
     double packed = 0;  // part of the time to compress the heights
     scene.pack([&] {
@@ -253,11 +253,12 @@ void serve(const ServerOptions& options) {
     });
     const host::WorkerPool pool(options.sandThreads);
     std::optional<sand::Replica> replica(std::in_place, scene, pool.lend());
-    signals.hold();  // a device that is open must be closed in order
+    // A device that is open must be closed in order.
+    signals.hold([] { print("it ends as soon as the device is open; a second signal ends it at once"); });
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
     const Device& device = *opened;  // the hand takes ownership below
     HandChannel channel;
-    Listener* open = nullptr;  // for the main thread alone
+    Listener* open = nullptr;  // for the thread that runs `io`
     channel.failure.onFailure([&io, &open] {
         asio::post(io, [&io, &open] { open != nullptr ? open->shut("the server has failed") : io.stop(); });
     });
@@ -272,6 +273,7 @@ void serve(const ServerOptions& options) {
     channel.recorder = recorder.get();
 
     acceptor = loading.end();
+    channel.failure.rethrow();  // the loading has taken the word of a failure
     std::function<Report()> measure;
     Service service = serviceOf(options, scene, io, hand);
     service.report = [&measure] { return measure(); };
@@ -292,9 +294,11 @@ void serve(const ServerOptions& options) {
 
     DeviceWatch watch(io, options.device, hand);
     signals.onFirst([&listener] { listener.shut("the server was stopped"); });
-    listener.serve(sandThread);
-    open = &listener;
-    announce(options, hand, endpoint);
+    if (!io.stopped()) {  // no signal came while the device opened
+        listener.serve(sandThread);
+        open = &listener;
+        announce(options, hand, endpoint);
+    }
     runLinks(io);
     if (loop != nullptr) {
         loop->stop();  // pushes 0 before anything that may take long

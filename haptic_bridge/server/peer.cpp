@@ -153,7 +153,9 @@ void Peer::endLoading(const std::string& why) {
     if (phase_ == Phase::loading) {
         connection_->send(Loading{service_.loading(), handshake_.mac()});
     }
-    connection_->send(Bye{why});
+    if (phase_ != Phase::greeting) {  // TLS may not be there yet
+        connection_->send(Bye{why});
+    }
     const auto kept = connection_;
     end(why);
     kept->finish();

@@ -225,8 +225,6 @@ void JournalKeeper::force(const journal::JournalForce& force) { note(force); }
 void JournalKeeper::endCheckpoint() {
     if (checkpoint_.valid() && checkpoint_.wait_for(kPatience) != std::future_status::ready) {
         *leftOut_ = true;
-        host::printLine("the checkpoint of step {} is left out, because it was not written within {} s",
-                        checkpointStep_, kPatience.count());
         checkpoint_.wait();
     }
     takeCheckpoint();
@@ -239,6 +237,8 @@ void JournalKeeper::takeCheckpoint() {
     }
     const std::string complaint = checkpoint_.get();
     if (complaint == kLeftOut) {
+        host::printLine("the checkpoint of step {} is left out, because it was not written within {} s",
+                        checkpointStep_, kPatience.count());
         return;
     }
     checkpointsFailed_ += complaint.empty() ? 0 : 1;

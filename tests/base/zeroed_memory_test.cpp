@@ -18,14 +18,6 @@ bool isZero(const ZeroedMemory& memory, std::size_t first, std::size_t end) {
     return std::all_of(memory.data() + first, memory.data() + end, [](std::byte one) { return one == std::byte{0}; });
 }
 
-/// Returns the resident memory of this process [MiB].
-double residentMebibytes() {
-    std::ifstream file("/proc/self/statm");
-    double pages = 0;
-    file >> pages >> pages;
-    return pages * 4096 / (1 << 20);
-}
-
 TEST(ZeroedMemory, IsZeroAtFirstAndCopiesWhatIsWritten) {
     for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{4096}, std::size_t{100'003}}) {
         ZeroedMemory memory(size);
@@ -63,6 +55,14 @@ TEST(ZeroedMemory, StaysZeroWhereItIsReleasedAndKeepsTheRest) {
 }
 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// Returns the resident memory of this process [MiB].
+double residentMebibytes() {
+    std::ifstream file("/proc/self/statm");
+    double pages = 0;
+    file >> pages >> pages;
+    return pages * 4096 / (1 << 20);
+}
+
 TEST(ZeroedMemory, TakesMemoryOnlyForWhatIsWritten) {
     const double mebibytes = static_cast<double>(kLarge) / (1 << 20);
     const double before = residentMebibytes();

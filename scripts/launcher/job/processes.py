@@ -160,8 +160,9 @@ class Job:
 
     started = 0
 
-    def __init__(self, command, environment, log=None):
+    def __init__(self, command, environment, log=None, fresh=False):
         Job.started += 1
+        self.fresh = fresh  # whether the session has shown no frame before this job
         self.mark = f"{os.getpid()}-{Job.started}-{secrets.token_hex(8)}"  # no other session has it, also in another container
         self.log = log
         output = {"stdout": log.out.file, "stderr": log.err.file} if log else {}
@@ -199,8 +200,8 @@ class Job:
         return self.brief and self.terminated
 
     def starts(self):
-        """Returns whether the job has shown no frame yet, as far as its log tells."""
-        return self.log is not None and self.log.frame is None
+        """Returns whether the session has shown no frame yet, as far as the log of this job tells."""
+        return self.fresh and self.log is not None and self.log.frame is None
 
     def look(self, stop):
         """Returns the exit status, or None while the job runs. Ends the job in order after one signal, at once after two."""
@@ -222,7 +223,7 @@ class Job:
             print_line("stopping; finishing journal and pictures; press Ctrl-C again to kill")
             events.emit("stopping")
             self.stop()
-        if self.brief and not self.starts():  # the first frame was shown meanwhile, so that there is something to keep
+        if self.brief and not self.terminated and not self.starts():  # the first frame was shown meanwhile, so that there is something to keep
             self.brief = False
             self.deadline = max(self.deadline, now + ORDERLY_END_SECONDS)
         if self.deadline is None and self.log and self.log.ending:

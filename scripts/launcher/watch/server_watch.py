@@ -83,7 +83,8 @@ class ServerWatch:
         self.missed = True
         self.untold = self.server.scene_error()
         failure = Failure(f"{failed_processes.SERVER} {how_ended(status)}", how=ending_of(status))
-        print_line(f"{failure.text}; the session continues without it, because of --restarts 0")
+        if self.untold is None:
+            print_line(f"{failure.text}; the session continues without it, because of --restarts 0")
         failed.add(failure, restarted=False)
 
     def tell(self, job_status):

@@ -204,7 +204,7 @@ class Supervisor:
     def one_try(self, words, log):
         """Runs the job until it ends, and supervises the haptic server meanwhile. Returns the exit status of the job."""
         command, environment = self.start_of(self.hosts.names, self.haptic, words, log)
-        self.job = Job(command, environment, log)
+        self.job = Job(command, environment, log, fresh=not (self.shown or "--resume" in words))
         self.input.job = self.job
         self.input.listen()
         while (status := self.job.look(self.stop)) is None:

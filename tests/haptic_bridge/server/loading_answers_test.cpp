@@ -123,6 +123,25 @@ TEST_F(LoadingAnswersTest, OnlySoManyPeersMayWait) {
     EXPECT_NE(more.refusal().find("busy"), std::string::npos);
 }
 
+// Otherwise watchers could keep the master out.
+TEST_F(LoadingAnswersTest, HalfOfTheWaitingPeersMayBeWatchers) {
+    constexpr std::size_t kMost = 4;  // docs/protocol.md
+    listen();
+    std::vector<std::unique_ptr<RawPeer>> peers;
+    for (std::size_t i = 0; i < kMost; ++i) {
+        peers.push_back(std::make_unique<RawPeer>(port_));
+        peers.back()->send(hello(Role::watch));
+        const auto answer = peers.back()->receive();
+        ASSERT_TRUE(answer && std::holds_alternative<Loading>(*answer)) << i;
+    }
+    RawPeer watcher(port_), master(port_);
+    watcher.send(hello(Role::watch));
+    EXPECT_NE(watcher.refusal().find("busy"), std::string::npos);
+    master.send(hello());
+    const auto answer = master.receive();
+    EXPECT_TRUE(answer && std::holds_alternative<Loading>(*answer));
+}
+
 TEST_F(LoadingAnswersTest, EndWithoutPeersAndWithTheObject) {
     listen();
     const asio::ip::tcp::acceptor acceptor = end();

@@ -64,6 +64,28 @@ class Stopping(Supervised):
         process.communicate(timeout=60)
         self.assertEqual((process.returncode, len(self.commands())), (137, 1))
 
+    def stopped_at_its_start(self, *options):
+        """Sends SIGINT to a session before its first frame. Returns its status and what it has printed for a person."""
+        process = self.begin(["-"], *options)
+        self.wait_for("job", (self.folder / "began").exists)
+        process.send_signal(signal.SIGINT)
+        error = process.communicate(timeout=60)[1]
+        return process.returncode, error
+
+    def test_one_ctrl_c_ends_a_start_that_does_not_listen(self):
+        self.tries("touch $folder/began; while :; do sleep 0.05; done")
+        status, error = self.stopped_at_its_start()
+        self.assertEqual((status, len(self.commands())), (0, 1), error)
+        self.assertIn("sandwall: stopped before the first frame\n", error)
+        self.assertFalse((self.folder / "out" / "failures.jsonl").exists())
+
+    def test_a_session_that_has_shown_a_frame_before_may_end_in_order(self):
+        self.tries("touch $folder/began; read -r line; sleep 3; progress 1 1; touch $folder/ended; exit 0")
+        status, error = self.stopped_at_its_start("--resume")
+        self.assertEqual(status, 0, error)
+        self.assertNotIn("stopped before", error)
+        self.assertTrue((self.folder / "ended").exists())
+
     def hung_up(self, command, terminal, types):
         """Sends SIGHUP to a session that `command` starts. Then types a line that ends it, if the test expects it to continue.
 
