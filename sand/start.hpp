@@ -90,7 +90,7 @@ struct Start {
     /// Returns the volume of the heights [unit · cell]; nullopt for a TIN, whose volume takes seconds (volumeOf()).
     [[nodiscard]] std::optional<std::int64_t> volumeOfHeights() const;
     /// Returns an upper bound of Replica::encodeState() for a height field, at most 2^32 - 2^16 [byte]; 0 for a TIN.
-    [[nodiscard]] std::size_t mostStateBytes() const;
+    [[nodiscard]] std::int64_t mostStateBytes() const;
     [[nodiscard]] SizeText sizeText() const;
 };
 

@@ -190,7 +190,7 @@ Service serviceOf(const ServerOptions& options, const scene::Scene& scene, asio:
     service.forceCeiling = own.ceiling();
     service.switchOn = [&hand] { hand.switchOn(); };
     service.tests = options.tests;
-    service.mostState = std::max(kMaxState, scene.mostStateBytes());
+    service.mostState = std::max(kMaxState, static_cast<std::size_t>(scene.mostStateBytes()));
     return service;
 }
 

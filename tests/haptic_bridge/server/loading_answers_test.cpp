@@ -31,11 +31,17 @@ protected:
         port_ = acceptor.local_endpoint().port();
         answers_ = std::make_unique<LoadingAnswers>(io_, std::move(acceptor), security, [](const std::string&) {});
     }
+    void TearDown() override {
+        if (answers_ && !ended_) {
+            (void)end();
+        }
+    }
     [[nodiscard]] Address address() const { return {"127.0.0.1", port_}; }
     /// Ends the loading, and runs what is left on the connections.
     asio::ip::tcp::acceptor end() {
+        ended_ = true;
         asio::ip::tcp::acceptor acceptor = answers_->end();
-        io_.run_for(1s);
+        io_.run_for(10s);  // until all connections are closed
         return acceptor;
     }
     static bool loads(const Client& client, std::uint32_t done) {
@@ -45,6 +51,7 @@ protected:
     asio::io_context io_;
     std::uint16_t port_ = 0;
     std::unique_ptr<LoadingAnswers> answers_;
+    bool ended_ = false;
 };
 
 TEST_F(LoadingAnswersTest, TellHowMuchIsReadAndNeverLess) {
