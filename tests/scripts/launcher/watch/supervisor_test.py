@@ -109,7 +109,7 @@ class Stopping(Supervised):
         return (self.folder / "asked").read_text(), error
 
     def test_the_end_of_its_terminal_ends_a_session_unless_nohup_has_started_it(self):
-        self.tries("until read -r -t 0.1 part; do line=$line$part; progress 1 1; done; echo $line$part > $folder/asked; exit 0")
+        self.tries("until read -r -t 0.1 part; do typed=$typed$part; progress 1 1; done; echo $typed$part > $folder/asked; exit 0")
         asked, error = self.hung_up([], terminal=True, types=False)
         self.assertEqual(asked, "stop\n")
         self.assertIn("stopping", error)
