@@ -71,7 +71,7 @@ void Erosion::noteWritten() {
 }
 
 void Erosion::releaseRest() {
-    constexpr int kCalls = 64;  // rows that are dug again and again keep their memory
+    constexpr int kCalls = 16;  // rows that are dug again within so many steps keep their memory
     if (++calls_ < kCalls) {
         return;
     }
