@@ -138,7 +138,7 @@ void LiveSteps::waitForLink(Link link) {
             takeOver("refused", "refused");
         } else if (progressNs_ != 0 && secondsSince(progressNs_) > kLoadingWait) {
             takeOver("no_server", fmt::format("{} gets no further with its scene", server));
-        } else if (link != Link::loading && secondsSince(waitingSinceNs_) > kStartWait) {
+        } else if (secondsSince(waitingSinceNs_) > kStartWait) {
             takeOver("no_server", fmt::format("no answer from {} for {:.0f} s", server, kStartWait));
         }
     } else if (source_ != Source::own) {

@@ -60,6 +60,11 @@ TEST_F(LoadingAnswersTest, TellHowMuchIsReadAndNeverLess) {
     const Client client(address(), offerOf(scene_));
     ASSERT_TRUE(loads(client, 250)) << client.link().message;
     answers_->setDone(0.1);
+    RawPeer peer(port_);
+    peer.send(hello());
+    const auto answer = peer.receive();
+    ASSERT_TRUE(answer && std::holds_alternative<Loading>(*answer));
+    EXPECT_EQ(std::get<Loading>(*answer).done, 250U);
     answers_->setDone(0.5);
     ASSERT_TRUE(loads(client, 500)) << client.link().message;
     const asio::ip::tcp::acceptor acceptor = end();
