@@ -5,7 +5,6 @@
 
 #include <utility>
 
-#include "host/clock.hpp"
 #include "host/event.hpp"
 
 namespace host {
@@ -16,11 +15,16 @@ constexpr std::int64_t kFirstNs = 2'000'000'000, kNextNs = 10'000'000'000;
 
 }  // namespace
 
-PhaseProgress::PhaseProgress(std::string name, std::string what, std::function<void(const std::string&)> print)
-    : name_(std::move(name)), what_(std::move(what)), print_(std::move(print)), dueNs_(monotonicNs() + kFirstNs) {}
+PhaseProgress::PhaseProgress(std::string name, std::string what, std::function<void(const std::string&)> print,
+                             Clock clock)
+    : name_(std::move(name)),
+      what_(std::move(what)),
+      print_(std::move(print)),
+      now_(std::move(clock)),
+      dueNs_(now_() + kFirstNs) {}
 
 void PhaseProgress::done(double share) {
-    const std::int64_t now = monotonicNs();
+    const std::int64_t now = now_();
     if (now < dueNs_) {
         return;
     }

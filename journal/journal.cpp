@@ -48,8 +48,8 @@ auto decoded(const JournalReader& reader, Decode decode) {
 
 }  // namespace
 
-scene::Scene sceneOf(const JournalReader& reader) {
-    return decoded(reader, [](std::span<const std::uint8_t> bytes) { return scene::Scene::decode(bytes); });
+scene::Scene sceneOf(const JournalReader& reader, scene::Scene::Keep keep) {
+    return decoded(reader, [keep](std::span<const std::uint8_t> bytes) { return scene::Scene::decode(bytes, keep); });
 }
 
 sand::Rules rulesOf(const JournalReader& reader) { return decoded(reader, scene::Scene::decodeRules); }

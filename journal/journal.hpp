@@ -35,7 +35,7 @@ struct Journal {
 /// its scene is invalid.
 [[nodiscard]] Journal readAll(JournalReader& reader);
 /// Decodes the scene in the header. Throws base::InputError if it is invalid.
-[[nodiscard]] scene::Scene sceneOf(const JournalReader& reader);
+[[nodiscard]] scene::Scene sceneOf(const JournalReader& reader, scene::Scene::Keep keep = scene::Scene::Keep::heights);
 /// Decodes only the rules of the scene in the header, not its heights. Throws base::InputError if they are invalid.
 [[nodiscard]] sand::Rules rulesOf(const JournalReader& reader);
 

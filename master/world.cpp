@@ -212,7 +212,9 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
     requireFolder(options.out);
     World world{loadScene(cluster, options), loadWall(options), {}};
     requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
-    world.scene.pack();
+    if (world.scene.packed == nullptr) {  // the scene of a resumed session is still packed
+        world.scene.pack();
+    }
     requireRanks(cluster, world.wall, options);
     makeOut(options.out);
     SessionOptions& session = options.session;

@@ -45,7 +45,8 @@ LoadingAnswers::LoadingAnswers(asio::io_context& io, asio::ip::tcp::acceptor acc
 
 LoadingAnswers::~LoadingAnswers() {
     if (thread_.joinable()) {
-        join();
+        io_.stop();
+        thread_.join();
     }
 }
 
@@ -76,11 +77,6 @@ asio::ip::tcp::acceptor LoadingAnswers::end() {
         std::rethrow_exception(failed);
     }
     return std::move(*acceptor);
-}
-
-void LoadingAnswers::join() {
-    io_.stop();
-    thread_.join();
 }
 
 }  // namespace haptic_bridge

@@ -32,8 +32,6 @@ public:
     [[nodiscard]] boost::asio::ip::tcp::acceptor end();
 
 private:
-    void join();
-
     boost::asio::io_context& io_;
     std::atomic<std::uint32_t> done_{0};  // of Loading::kAll
     Listener listener_;

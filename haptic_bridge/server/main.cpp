@@ -4,6 +4,7 @@
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -32,6 +33,7 @@
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
 #include "host/worker_pool.hpp"
+#include "sand/model/grid_codec.hpp"
 #include "scene/load/memory.hpp"
 
 namespace {
@@ -40,7 +42,6 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 using namespace haptic_bridge;
 
-constexpr double kStripe = 1 << 22;  // [byte] of heights that are compressed at once
 constexpr double kScene = 0.8;  // part of the time to the first answer that the scene takes; its replica takes the rest
 
 void print(const std::string& line) {
@@ -144,6 +145,16 @@ public:
     using base::InputError::InputError;
 };
 
+void writeSceneError(const std::string& file, const std::string& line) {
+    try {
+        host::WholeFile whole(file);
+        whole.stream() << line << '\n';
+        whole.keep();
+    } catch (const base::InputError& refused) {
+        throw base::InputError(fmt::format("{}; and --scene-error-file {}", line, refused.what()));
+    }
+}
+
 /// Reads the scene. `done` gets the part of it that is read, 0 to 1.
 scene::Scene openScene(const ServerOptions& options, const std::function<void(double)>& done) {
     scene::Scene scene;
@@ -153,14 +164,7 @@ scene::Scene openScene(const ServerOptions& options, const std::function<void(do
         if (options.sceneErrorFile.empty()) {
             throw;
         }
-        try {
-            host::WholeFile file(options.sceneErrorFile);
-            file.stream() << error.what() << '\n';
-            file.keep();
-        } catch (const base::InputError& refused) {
-            print(std::string("--scene-error-file ") + refused.what());
-            throw error;
-        }
+        writeSceneError(options.sceneErrorFile, error.what());
         throw ReportedError(error.what());
     }
     for (const scene::RasterStatement& statement : *scene.statements) {
@@ -246,11 +250,9 @@ void serve(const ServerOptions& options) {
         loading.setDone(kScene * share);
         progress.done(share);
     });
-    double packed = 0;  // part of the time to compress the heights
-    scene.pack([&] {
-        packed = std::min(packed + kStripe / static_cast<double>(scene.terrain.cells().bytes()), 1.0);
-        loading.setDone(kScene + (1 - kScene) * packed);
-    });
+    const double stripes = std::ceil(static_cast<double>(scene.rules.columns) * scene.rules.rows / sand::kStripe);
+    double packed = 0;  // stripes of heights that are compressed
+    scene.pack([&] { loading.setDone(kScene + (1 - kScene) * ++packed / stripes); });
     const host::WorkerPool pool(options.sandThreads);
     std::optional<sand::Replica> replica(std::in_place, scene, pool.lend());
     // A device that is open must be closed in order.

@@ -21,9 +21,10 @@ void ServerOptions::addTo(host::CommandLine& line) {
     line.option("--record", record, "file to write with every tick of the device and its force; docs/forces.md")
         .metavar("FILE.csv")
         .offeredBy({"run"});
-    line.choice<bool>("--force", force, {{"on", true}, {"off", false}},
-                      "whether an arm feels a force. Of `run`: until `ctl force` sets a share; with --resume it "
-                      "replaces the share that `ctl` had set. Of a server that you start: a ceiling; docs/devices.md")
+    line.choice<bool>(
+            "--force", force, {{"on", true}, {"off", false}},
+            "whether an arm feels a force. With `run` it holds until `ctl force` sets a share; with --resume it "
+            "replaces the share that `ctl` had set. A server that you start takes it as a ceiling; docs/devices.md")
         .offeredBy({"run"});
     line.option("--force-scale", forceScale,
                 "0 to 1: the share of the force that an arm feels, in the same way as --force")

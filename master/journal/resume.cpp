@@ -243,7 +243,7 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     journal::JournalReader reader = openJournal(journal);
     requireScene(reader, scene);
     ResumedSession session;
-    session.scene = journal::sceneOf(reader);
+    session.scene = journal::sceneOf(reader, scene::Scene::Keep::packedToo);
     session.scene.material = session.material = reader.header().material.value_or(scene::Material());
     Walk walk{session, journal, {}};
     try {

@@ -13,8 +13,6 @@
 namespace sand {
 namespace {
 
-// [number], most in a frame of zstd unless a row has more. A field is compressed without a copy of all its numbers.
-constexpr std::size_t kStripe = std::size_t{1} << 20;
 constexpr int kMostWindow = 23;  // log2 of the memory that a frame may need to be unpacked [byte]
 
 std::size_t countOf(const CellRect& cells) {

@@ -10,6 +10,9 @@
 
 namespace sand {
 
+/// Most numbers in a stripe, unless a row has more.
+inline constexpr std::size_t kStripe = std::size_t{1} << 20;
+
 /// Appends the numbers of `cells` to `writer`, compressed without loss. `cells` may include ghost cells. Scenes, states
 /// and the journal use this format: a block of zstd frames, each with a stripe of whole rows. Needs memory for a stripe
 /// and for the compressed bytes. Calls `between` after each stripe, unless it is empty. It may throw, in order to stop.

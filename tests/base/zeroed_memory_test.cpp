@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <utility>
+
+#include "tests/support/machine/resident.hpp"
 
 namespace {
 
@@ -55,26 +56,18 @@ TEST(ZeroedMemory, StaysZeroWhereItIsReleasedAndKeepsTheRest) {
 }
 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-/// Returns the resident memory of this process [MiB].
-double residentMebibytes() {
-    std::ifstream file("/proc/self/statm");
-    double pages = 0;
-    file >> pages >> pages;
-    return pages * 4096 / (1 << 20);
-}
-
 TEST(ZeroedMemory, TakesMemoryOnlyForWhatIsWritten) {
-    const double mebibytes = static_cast<double>(kLarge) / (1 << 20);
-    const double before = residentMebibytes();
+    constexpr auto kAll = static_cast<std::int64_t>(kLarge);
+    const std::int64_t before = test::residentBytes();
     ZeroedMemory memory(kLarge);
     EXPECT_TRUE(isZero(memory, 0, kLarge));
     const ZeroedMemory copy(memory);
-    EXPECT_LE(residentMebibytes() - before, 0.1 * mebibytes);
+    EXPECT_LE(test::residentBytes() - before, kAll / 10);
     std::fill(memory.data(), memory.data() + kLarge, std::byte{1});
-    EXPECT_GE(residentMebibytes() - before, 0.9 * mebibytes);
+    EXPECT_GE(test::residentBytes() - before, kAll / 10 * 9);
     std::fill(memory.data(), memory.data() + kLarge, std::byte{0});
     memory.release(0, kLarge);
-    EXPECT_LE(residentMebibytes() - before, 0.1 * mebibytes);
+    EXPECT_LE(test::residentBytes() - before, kAll / 10);
 }
 #endif
 

@@ -18,7 +18,7 @@ from job.job_stream import LIBC
 from job.mpirun_end import EndWatch
 
 SERVER_START_SECONDS = 20  # until the server listens, which it does before it reads its scene
-SERVER_READY_SECONDS = 0.4  # the time that the server gets to read a small scene, so that its complaints come before the job
+SERVER_READY_SECONDS = 0.4  # after that the time that the server gets to read a small scene, so that its complaints come before the job
 ORDERLY_END_SECONDS = 120  # pictures of a large wall take their time
 START_END_SECONDS = 1.5  # before the first frame, when nothing must be kept
 KILL_SECONDS = 5
@@ -121,20 +121,25 @@ class HapticServer:
         except FileNotFoundError:
             return None
 
+    def wait(self, done, seconds):
+        """Waits until done(), at most `seconds`. Throws BadInput or SystemExit if the server has refused its input."""
+        deadline = time.monotonic() + seconds
+        while not done() and time.monotonic() < deadline:
+            if error := self.scene_error():
+                raise BadInput(error)
+            if self.process.poll() is not None:
+                raise SystemExit(self.process.returncode if self.process.returncode > 0 else 1)  # the server has printed the reason
+            time.sleep(0.01)
+
     def address(self):
         """Waits until the server listens and has had the time for a small scene, and returns HOST:PORT.
 
         Throws BadInput after SERVER_START_SECONDS, or if the server has refused the scene.
         """
-        began = time.monotonic()
-        while not self.listens() or (not self.is_ready() and time.monotonic() < began + SERVER_READY_SECONDS):
-            if self.process.poll() is not None:
-                if error := self.scene_error():
-                    raise BadInput(error)
-                raise SystemExit(self.process.returncode if self.process.returncode > 0 else 1)  # the server has printed the reason
-            if not self.listens() and time.monotonic() > began + SERVER_START_SECONDS:
-                raise BadInput(f"the haptic server did not listen within {SERVER_START_SECONDS} s")
-            time.sleep(0.01)
+        self.wait(self.listens, SERVER_START_SECONDS)
+        if not self.listens():
+            raise BadInput(f"the haptic server did not listen within {SERVER_START_SECONDS} s")
+        self.wait(self.is_ready, SERVER_READY_SECONDS)
         self.port = int(self.port_file.read_text())
         return f"127.0.0.1:{self.port}"
 

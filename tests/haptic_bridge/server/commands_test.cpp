@@ -2,17 +2,15 @@
 // Commands that come while the sand thread is busy take a limited amount of memory.
 #include "haptic_bridge/server/commands.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <future>
 #include <memory>
 #include <vector>
 
 #include "haptic_bridge/devices/open_device.hpp"
 #include "haptic_bridge/server/sand_thread.hpp"
+#include "tests/support/machine/resident.hpp"
 #include "tests/support/processes/server_process.hpp"
 #include "tests/support/sand/sand_samples.hpp"
 
@@ -78,17 +76,10 @@ private:
     SandThread thread_;
 };
 
-std::int64_t resident() {  // [byte]
-    std::ifstream stream("/proc/self/statm");
-    std::int64_t total = 0, pages = 0;
-    stream >> total >> pages;
-    return pages * sysconf(_SC_PAGESIZE);
-}
-
 // Each `settle` lets the server read another long load (docs/protocol.md).
 TEST(SandThread, SixLoadsOf192MiBBetweenSettlesLeaveMemoryFlat) {
     BusySandThread busy;
-    const std::int64_t before = resident();
+    const std::int64_t before = residentBytes();
     std::int64_t most = 0;
     std::vector<std::weak_ptr<const base::Bytes>> loads;
     std::ptrdiff_t alive = 0;
@@ -98,7 +89,7 @@ TEST(SandThread, SixLoadsOf192MiBBetweenSettlesLeaveMemoryFlat) {
         busy.thread().edit(std::move(load));
         alive =
             std::max(alive, std::count_if(loads.begin(), loads.end(), [](const auto& one) { return !one.expired(); }));
-        most = std::max(most, resident() - before);
+        most = std::max(most, residentBytes() - before);
         busy.thread().edit({sand::Edit::settle});
     }
     EXPECT_EQ(alive, 1);
@@ -111,7 +102,7 @@ TEST(SandThread, SixLoadsOf192MiBBetweenSettlesLeaveMemoryFlat) {
 
 TEST(SandThread, ManyFramesAndSmallLoadsLeaveMemoryFlat) {
     BusySandThread busy;
-    const std::int64_t before = resident();
+    const std::int64_t before = residentBytes();
     const EditRequest small{sand::Edit::loaded(base::Bytes(60'000, 1))};
     for (std::uint64_t i = 0; i < 200'000; ++i) {
         busy.thread().shown({i, 1}, 1);
@@ -119,7 +110,7 @@ TEST(SandThread, ManyFramesAndSmallLoadsLeaveMemoryFlat) {
             busy.thread().edit({sand::Edit::loaded(base::Bytes(60'000, 1))});
         }
     }
-    const double grown = static_cast<double>(resident() - before);
+    const double grown = static_cast<double>(residentBytes() - before);
     std::printf("resident memory grew by %.0f MiB\n", grown / (1 << 20));
 #ifdef SANDWALL_RELEASE
     // One small load and 64 frames take 62 KB; the allocator may keep some pages more.

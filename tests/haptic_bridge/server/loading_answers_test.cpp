@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "haptic_bridge/server/listen_at.hpp"
 #include "tests/haptic_bridge/link/link_security_fixture.hpp"
@@ -43,6 +44,17 @@ protected:
         asio::ip::tcp::acceptor acceptor = answers_->end();
         io_.run_for(10s);  // until all connections are closed
         return acceptor;
+    }
+    /// Returns so many peers, each of which has got a Loading.
+    std::vector<std::unique_ptr<RawPeer>> peersThatWait(int count, Role role) {
+        std::vector<std::unique_ptr<RawPeer>> peers;
+        for (int i = 0; i < count; ++i) {
+            peers.push_back(std::make_unique<RawPeer>(port_));
+            peers.back()->send(hello(role));
+            const auto answer = peers.back()->receive();
+            EXPECT_TRUE(answer && std::holds_alternative<Loading>(*answer)) << i;
+        }
+        return peers;
     }
     static bool loads(const Client& client, std::uint32_t done) {
         return eventually([&] { return client.link().link == Link::loading && client.link().loaded == done; });
@@ -121,15 +133,8 @@ TEST_F(LoadingAnswersTest, RefuseAllOtherMessages) {
 }
 
 TEST_F(LoadingAnswersTest, OnlySoManyPeersMayWait) {
-    constexpr std::size_t kMost = 8;  // docs/protocol.md
     listen();
-    std::vector<std::unique_ptr<RawPeer>> peers;
-    for (std::size_t i = 0; i < kMost; ++i) {
-        peers.push_back(std::make_unique<RawPeer>(port_));
-        peers.back()->send(hello());
-        const auto answer = peers.back()->receive();
-        ASSERT_TRUE(answer && std::holds_alternative<Loading>(*answer)) << i;
-    }
+    const auto waiting = peersThatWait(8, Role::move);  // docs/protocol.md
     RawPeer more(port_);
     more.send(hello());
     EXPECT_NE(more.refusal().find("busy"), std::string::npos);
@@ -137,21 +142,12 @@ TEST_F(LoadingAnswersTest, OnlySoManyPeersMayWait) {
 
 // Otherwise watchers could keep the master out.
 TEST_F(LoadingAnswersTest, HalfOfTheWaitingPeersMayBeWatchers) {
-    constexpr std::size_t kMost = 4;  // docs/protocol.md
     listen();
-    std::vector<std::unique_ptr<RawPeer>> peers;
-    for (std::size_t i = 0; i < kMost; ++i) {
-        peers.push_back(std::make_unique<RawPeer>(port_));
-        peers.back()->send(hello(Role::watch));
-        const auto answer = peers.back()->receive();
-        ASSERT_TRUE(answer && std::holds_alternative<Loading>(*answer)) << i;
-    }
-    RawPeer watcher(port_), master(port_);
+    const auto waiting = peersThatWait(4, Role::watch);
+    RawPeer watcher(port_);
     watcher.send(hello(Role::watch));
     EXPECT_NE(watcher.refusal().find("busy"), std::string::npos);
-    master.send(hello());
-    const auto answer = master.receive();
-    EXPECT_TRUE(answer && std::holds_alternative<Loading>(*answer));
+    const auto master = peersThatWait(1, Role::move);
 }
 
 TEST_F(LoadingAnswersTest, EndWithoutPeersAndWithTheObject) {

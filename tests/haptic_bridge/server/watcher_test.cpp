@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "host/clock.hpp"
+#include "tests/haptic_bridge/client/fake_server.hpp"
 #include "tests/haptic_bridge/link/link_security_fixture.hpp"
 #include "tests/haptic_bridge/link/raw_peer.hpp"
 #include "tests/support/sand/sand_samples.hpp"
@@ -74,6 +75,30 @@ TEST_F(LinkSecurityTest, TheProgramThatWatchesPrintsWhereTheProbeIs) {
     const std::string plain = watch("");
     EXPECT_NE(plain.find("this server accepts only TLS"), std::string::npos) << plain;
     EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
+}
+
+TEST(TheProgramThatWatches, ComesAgainWhenTheServerHasReadItsScene) {
+    const Folder folder;
+    int greeted = 0;
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (!connection.await<Hello>()) {
+            return;
+        }
+        if (greeted++ == 0) {
+            connection.send(Loading{500});
+            connection.await<Ping>();
+            connection.send(Bye{"its scene is read"});
+        } else {
+            connection.send(Welcome{{.sceneName = "dunes"}, 60, Role::watch});
+            connection.await<Bye>();
+        }
+    });
+    const std::string command = "timeout 60 " SANDWALL_BIN_DIR "/sandwall-watch " + server.address().text() +
+                                " --lines 1 >" + folder.file("watch") + " 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    const std::string told = folder.read("watch");
+    EXPECT_EQ(told.find("the server reads its scene\nscene 'dunes', 60 steps per second\nstep "), 0U) << told;
+    EXPECT_EQ(greeted, 2);
 }
 
 TEST_F(LinkSecurityTest, WhoWatchesAndDoesNotReadIsCutOff) {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -53,6 +54,21 @@ protected:
     }
     [[nodiscard]] journal::JournalEnd here() { return {replica_.stepNumber(), replica_.stateHash()}; }
 };
+
+// The end of a session leaves out a checkpoint that takes too long.
+TEST_F(Checkpoints, AFileThatIsLeftOutLeavesNothing) {
+    begin({});
+    ASSERT_TRUE(showFrame());
+    const auto stop = [] { throw std::runtime_error("it is left out"); };
+    master::Checkpoint checkpoint;
+    checkpoint.step = 1;
+    checkpoint.state = base::Bytes(10, 7);
+    EXPECT_THROW(master::writeCheckpoint(journal(), checkpoint, 3, stop), std::runtime_error);
+    const std::filesystem::path folder = master::checkpointFile(journal(), 1).parent_path();
+    EXPECT_TRUE(std::filesystem::is_empty(folder));
+    master::writeCheckpoint(journal(), checkpoint, 3);
+    EXPECT_EQ(master::checkpointsOf(journal()), Steps{1});
+}
 
 // The newest two may be damaged.
 TEST_F(Checkpoints, OfFourTheNewestThreeAreKept) {

@@ -12,10 +12,7 @@
 
 namespace {
 
-using coarse::Levels;
-using coarse::levelsOfTools;
-using coarse::nameOf;
-using coarse::relaxCoarsely;
+using namespace coarse;
 using sand::HeightField;
 
 /// Returns the misplaced share of the pile that a cylinder in the middle of an n x n field becomes.

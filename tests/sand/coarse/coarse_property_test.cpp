@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand slides over coarse cells before it slides over the field's own: it is poured on one spot, stays in the envelopes
-// of its start, and commutes with mirror images.
+// Sand that slides over coarse cells before it slides over the field's own. It is poured on one spot, stays in the
+// envelopes of its start, and commutes with mirror images.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,10 +19,7 @@
 
 namespace {
 
-using coarse::Levels;
-using coarse::levelsOfTools;
-using coarse::nameOf;
-using coarse::relaxCoarsely;
+using namespace coarse;
 using sand::HeightField;
 using sand::Rim;
 using sand::grid::CoarseLevel;

@@ -2,7 +2,10 @@
 // Sweeps give the memory of fluxes back where sand rests. That must not change the sand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "sand/grid/erosion.hpp"
+#include "tests/support/machine/resident.hpp"
 #include "tests/support/sand/relaxing.hpp"
 
 namespace {
@@ -61,5 +64,25 @@ TEST(FluxMemory, SandThatSlidesKeepsItsFluxes) {
     other.sweep(whole, 3);
     EXPECT_TRUE(sameHeights(field, whole));
 }
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// The first sweep visits all blocks, and writes all fluxes.
+TEST(FluxMemory, IsGivenBackWhereSandRests) {
+    HeightField field(kFluxColumns, 1024, 1.0);
+    for (int y = 0; y < field.rows(); ++y) {
+        std::fill_n(field.row(y), field.columns(), 1);  // so that the heights have their memory
+    }
+    const sand::Rules rules = samples::rulesFor(field);
+    const std::int64_t before = test::residentBytes();
+    Erosion erosion(field, rules);
+    erosion.sweep(field, sand::SweepPart::all(1));
+    const std::int64_t most = test::residentBytes() - before;
+    EXPECT_GE(most, 100 << 20) << "two fluxes of 64 MiB";
+    for (int call = 0; call < 40; ++call) {
+        erosion.sweep(field, sand::SweepPart::all(1));
+    }
+    EXPECT_LE(test::residentBytes() - before, most / 10);
+}
+#endif
 
 }  // namespace

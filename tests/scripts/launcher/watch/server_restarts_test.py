@@ -22,6 +22,7 @@ while [ $# -gt 1 ]; do
     case $1 in --listen) listen=$2;; --listening-file) listening=$2;; --port-file) ready=$2;; --scene-error-file) error=$2;; esac
     shift
 done
+echo "$error" >> "$folder/errors"
 port=${listen##*:}; [ "$port" = 0 ] && port=4711
 echo $$ > "$folder/server.pid"
 write() { echo "$2" > "$1.new"; mv "$1.new" "$1"; }
@@ -116,7 +117,6 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
         self.assertIn("sandwall: the session is given up", error)
         self.assertEqual(error.count("the haptic server was killed by SIGKILL; shown: frame 5, step 4"), 3, error)
 
-
     def test_the_job_starts_beside_a_server_that_reads_a_large_scene(self):
         self.loads("listens")
         self.tries("progress 1 1; exit 0")
@@ -125,7 +125,7 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
         self.assertIn("--haptic 127.0.0.1:4711 ", self.commands()[0])
 
     def test_a_scene_that_the_server_refuses_soon_is_one_line_and_no_job(self):
-        self.loads('listens; write "$error" "scene.toml:3: no"; exit 2')
+        self.loads('write "$error" "scene.toml:3: no"; listens; exit 2')
         self.tries("exit 0")
         self.assertEqual(self.ended(["-"], "--device", "script:gis"), (2, "", "sandwall: scene.toml:3: no\n"))
         self.assertFalse((self.folder / "commands").exists())
@@ -135,6 +135,15 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
         self.tries("sleep 2; complain 0 'scene.toml:3: no'; exit 2")
         self.assertEqual(self.ended(["-"], "--device", "script:gis"), (2, "", "scene.toml:3: no\n"))
         self.assertEqual(len(self.servers()), 1)
+
+    def test_without_restarts_the_line_comes_at_the_end_unless_the_master_has_printed_it(self):
+        self.loads('listens; sleep 1.5; write "$error" "scene.toml:3: no"; exit 2')
+        gone = 'until [ -e "$(tail -1 "$folder/errors")" ]; do sleep 0.05; done; sleep 0.5; '
+        for end, printed in (("echo 'scene.toml:3: no' >&2; exit 2", "scene.toml:3: no\n"), ("exit 0", "sandwall: scene.toml:3: no\n")):
+            (self.folder / "tries").unlink(missing_ok=True)
+            self.tries(gone + end)
+            status, _, error = self.ended(["-"], "--device", "script:gis", "--restarts", "0")
+            self.assertEqual((status, error), (2 if "exit 2" in end else 0, printed))
 
     def test_a_scene_that_the_server_alone_refuses_ends_the_session(self):
         self.loads('listens; sleep 1.5; write "$error" "scene.toml: it needs more memory"; exit 2')
