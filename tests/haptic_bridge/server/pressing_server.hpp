@@ -3,7 +3,9 @@
 
 #include <sys/prctl.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <sstream>
 
@@ -22,13 +24,21 @@ protected:
         all[3] = "driver:" SANDWALL_BIN_DIR "/logging-driver.so:" + fault + ":" + folder_.file("forces");
         return all;
     }
-    /// Links a master, and follows until the arm is pushed. Without a master that follows, the force would fade.
+    /// Links a master, and follows until the arm is pushed. Without a master that follows, the force would fade. If the
+    /// arm trips, an operator switches its force on.
     void press(const haptic_bridge::Address& server) {
         client_ = std::make_unique<haptic_bridge::Client>(server, offerOf(scene_));
         Wall wall(scene_);
         ASSERT_TRUE(wall.follow(*client_, 5)) << client_->link().message << "\n" << folder_.read("err");
-        ASSERT_TRUE(eventually([&] { return wall.follow(*client_, wall.replica.stepNumber() + 1) && presses(); }))
-            << folder_.read("forces");
+        std::size_t switchedOnAt = 0;
+        ASSERT_TRUE(eventually([&] {
+            const std::size_t count = forces().size();
+            if (rests() && count > switchedOnAt + kRest) {
+                client_->shareForce({.share = 1, .byOperator = true});
+                switchedOnAt = count;
+            }
+            return wall.follow(*client_, wall.replica.stepNumber() + 1) && presses();
+        })) << folder_.read("forces");
     }
     void breakDown() { (void)folder_.write("forces.now", ""); }
 
@@ -52,12 +62,22 @@ protected:
     }
     /// Returns whether the last 21 forces are above 0, so that the arm presses when a server ends next.
     [[nodiscard]] bool presses() const {
-        static constexpr std::ptrdiff_t kPushes = 21;
-        const auto all = forces();
-        return std::ssize(all) >= kPushes &&
-               std::all_of(all.end() - kPushes, all.end(), [](double force) { return force > 0; });
+        return lastAre(21, [](double force) { return force > 0; });
+    }
+    /// Returns whether the arm has got no force for so long that it has tripped: on a busy machine, the force loop may
+    /// miss ticks three times within ten seconds.
+    [[nodiscard]] bool rests() const {
+        return lastAre(kRest, [](double force) { return force == 0; });
     }
     [[nodiscard]] double lastForce() const { return forces().back(); }
+
+    static constexpr std::size_t kRest = 300;  // pushes
+
+    /// Returns whether there are so many forces, and the last of them are all so.
+    [[nodiscard]] bool lastAre(std::size_t count, const std::function<bool(double)>& so) const {
+        const auto all = forces();
+        return all.size() >= count && std::all_of(all.end() - static_cast<std::ptrdiff_t>(count), all.end(), so);
+    }
 
     Folder folder_;
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
