@@ -72,20 +72,21 @@ float distance(const Samples& samples, const std::vector<float>& shareEast, cons
 }  // namespace
 
 LevelErrors errorsOf(const shapes::GridVertices& surface, const sand::CellRect& vertices, const glm::vec3& sun,
-                     int coarsest) {
-    const int across = vertices.x1 - vertices.x0;
-    const int down = vertices.y1 - vertices.y0;
+                     int finest, int coarsest) {
+    const int step = 1 << finest;
+    const int across = (vertices.x1 - vertices.x0 - 1) / step + 1;
+    const int down = (vertices.y1 - vertices.y0 - 1) / step + 1;
     const std::size_t all = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
     Samples heights{std::vector<float>(all), across};
     Samples light{std::vector<float>(all), across};
     std::vector<float> east, north;
-    for (int column = vertices.x0; column < vertices.x1; ++column) {
+    for (int column = vertices.x0; column < vertices.x1; column += step) {
         east.push_back(surface.east(column));
     }
     std::size_t next = 0;
-    for (int row = vertices.y0; row < vertices.y1; ++row) {
+    for (int row = vertices.y0; row < vertices.y1; row += step) {
         north.push_back(surface.north(row));
-        for (int column = vertices.x0; column < vertices.x1; ++column) {
+        for (int column = vertices.x0; column < vertices.x1; column += step) {
             const glm::vec2 slope = surface.slope(column, row);
             heights.values[next] = surface.height(column - 1, row - 1);
             const float towards = sun.z - slope.x * sun.x - slope.y * sun.y;
@@ -96,11 +97,13 @@ LevelErrors errorsOf(const shapes::GridVertices& surface, const sand::CellRect& 
     LevelErrors errors;
     constexpr std::array kDistances{distance<1>, distance<2>, distance<4>, distance<8>, distance<16>};
     static_assert(kDistances.size() == shapes::kLevels);
-    for (std::size_t level = 1; level <= static_cast<std::size_t>(coarsest); ++level) {
-        const std::vector<float> shareEast = sharesOf(east, 1 << level);
-        const std::vector<float> shareNorth = sharesOf(north, 1 << level);
-        errors.height[level] = kDistances[level](heights, shareEast, shareNorth);
-        errors.light[level] = kDistances[level](light, shareEast, shareNorth);
+    for (int level = finest + 1; level <= coarsest; ++level) {
+        const int stride = 1 << (level - finest);  // [sample]
+        const auto distance = kDistances[static_cast<std::size_t>(level - finest)];
+        const std::vector<float> shareEast = sharesOf(east, stride);
+        const std::vector<float> shareNorth = sharesOf(north, stride);
+        errors.height[static_cast<std::size_t>(level)] = distance(heights, shareEast, shareNorth);
+        errors.light[static_cast<std::size_t>(level)] = distance(light, shareEast, shareNorth);
     }
     return errors;
 }

@@ -13,10 +13,12 @@
 
 namespace render_node {
 
-/// Returns the errors of the levels up to `coarsest` in a square part of the vertex grid. The errors of coarser levels
-/// are 0. The part may extend beyond the field. `sun` points towards the sun and has length 1.
+/// Returns the errors of the levels above `finest` and up to `coarsest` in a rectangular part of the vertex grid,
+/// compared with the vertices of the level `finest`. The errors of other levels are 0. 2^coarsest must divide the
+/// numbers of quads along both sides. The part may extend beyond the field. `sun` points towards the sun and has length
+/// 1.
 [[nodiscard]] LevelErrors errorsOf(const shapes::GridVertices& surface, const sand::CellRect& vertices,
-                                   const glm::vec3& sun, int coarsest);
+                                   const glm::vec3& sun, int finest, int coarsest);
 
 /// Level of a chunk and of its four edges: south, east, north, west. No edge is coarser than the chunk.
 struct ChunkLevels {

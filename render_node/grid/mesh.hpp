@@ -72,10 +72,10 @@ private:
     struct Chunk {
         sand::CellRect vertices;  // of the vertex grid
         shapes::HeightRange heights;
-        std::uint64_t marked = 0;    // last revision that changed its vertices
-        std::uint64_t revision = 0;  // last revision that changed its vertices or `moving`
-        bool moving = false;         // whether sand that it depends on counts as moving
-        bool measured = false;       // `errors` belong to the current surface
+        std::uint64_t marked = 0;         // last revision that changed its vertices
+        std::uint64_t revision = 0;       // last revision that changed its vertices or `moving`
+        bool moving = false;              // whether sand that it depends on counts as moving
+        std::optional<int> measuredFrom;  // finest level of `errors`; nullopt unless they belong to the current surface
         LevelErrors errors;
         std::uint64_t chosenFor = 0;  // value of choice_ for which `level` was chosen
         int level = 0;
@@ -118,7 +118,8 @@ private:
     template <class Visit>  // void(int x, int y), with column and row of a chunk
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
     [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
-    [[nodiscard]] const LevelErrors& errorsOfChunk(Chunk& chunk, const LevelRule& rule);
+    [[nodiscard]] int chooseLevel(Chunk& asked, const LevelRule& rule);
+    [[nodiscard]] const LevelErrors& errorsOfChunk(Chunk& chunk, int finest);
     /// Returns the longest side of a triangle of any level along an axis [cell].
     [[nodiscard]] int longestStride() const { return 1 << layout_.coarsest; }
     [[nodiscard]] int strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const;

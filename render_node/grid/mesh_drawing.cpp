@@ -48,21 +48,34 @@ int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
         return 0;
     }
     if (asked.chosenFor != choice_) {
-        const shapes::Box box = boxOf(asked.vertices, asked.heights);
-        std::optional<int> level;
-        if (asked.moving && rule.coarsensMovement()) {
-            level = rule.levelWhileMoving(box, double{surface_.cellSize()}, layout_.coarsest);
-        }
-        asked.level = level ? *level : rule.level(box, errorsOfChunk(asked, rule), layout_.coarsest);
+        asked.level = chooseLevel(asked, rule);
         asked.chosenFor = choice_;
     }
     return asked.level;
 }
 
-const LevelErrors& GridMesh::errorsOfChunk(Chunk& chunk, const LevelRule& rule) {
-    if (!chunk.measured && !rule.needsEveryCell()) {
-        chunk.errors = errorsOf(surface_, chunk.vertices, sun_, layout_.coarsest);
-        chunk.measured = true;
+int GridMesh::chooseLevel(Chunk& asked, const LevelRule& rule) {
+    if (rule.needsEveryCell()) {
+        return 0;
+    }
+    const shapes::Box box = boxOf(asked.vertices, asked.heights);
+    const double cell{surface_.cellSize()};
+    if (asked.moving && rule.coarsensMovement()) {
+        if (const std::optional<int> level = rule.levelWhileMoving(box, cell, layout_.coarsest)) {
+            return *level;
+        }
+    }
+    const int finest = rule.finest(box, cell, layout_.coarsest);
+    return finest == layout_.coarsest ? finest
+                                      : rule.level(box, errorsOfChunk(asked, finest), finest, layout_.coarsest);
+}
+
+/// Returns the errors of a chunk above this level. They do not depend on earlier drawings, so that all ranks choose
+/// alike.
+const LevelErrors& GridMesh::errorsOfChunk(Chunk& chunk, int finest) {
+    if (chunk.measuredFrom != finest) {
+        chunk.errors = errorsOf(surface_, chunk.vertices, sun_, finest, layout_.coarsest);
+        chunk.measuredFrom = finest;
         ++work_.measuredChunks;
     }
     return chunk.errors;

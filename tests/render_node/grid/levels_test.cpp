@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include "pictures/compare.hpp"
@@ -141,7 +142,7 @@ TEST(Levels, AreAsFarFromTheSandAsTheySay) {
     const glm::vec3 sun = glm::normalize(glm::vec3(-0.55, 0.35, 0.6));
     for (int chunk = 0; chunk < kChunks * kChunks; chunk += 3) {
         const sand::CellRect vertices = chunkAt(chunk % kChunks, chunk / kChunks);
-        const auto errors = render_node::errorsOf(surface, vertices, sun, shapes::kLevels - 1);
+        const auto errors = render_node::errorsOf(surface, vertices, sun, 0, shapes::kLevels - 1);
         for (int level = 1; level < shapes::kLevels; ++level) {
             const double said = errors.height[static_cast<std::size_t>(level)];
             // The north and east edges belong to the chunks beyond them.
@@ -150,6 +151,28 @@ TEST(Levels, AreAsFarFromTheSandAsTheySay) {
             const double inner = distanceOf(surface, vertices, {level, {0, 0, 0, 0}});
             EXPECT_LE(inner, 1.5 * said) << "chunk " << chunk << ", level " << level << ": between finer neighbours";
         }
+    }
+}
+
+TEST(Levels, AreMeasuredFromTheFinestThatAPictureShows) {
+    constexpr int kFinest = 2, kStep = 1 << kFinest, kCells = 128;
+    const sand::HeightField all = hills(kCells, kCells, 2);
+    // The cell under vertex v of the large field is v - 1. The small field has the heights under every fourth vertex.
+    sand::HeightField few(kCells / kStep, kCells / kStep,
+                          1);  // the errors of heights do not depend on the size of cells
+    for (int row = 0; row < few.rows(); ++row) {
+        for (int column = 0; column < few.columns(); ++column) {
+            few.setHeight(column, row, all.height((column + 1) * kStep - 1, (row + 1) * kStep - 1));
+        }
+    }
+    const glm::vec3 sun = glm::normalize(glm::vec3(-0.55, 0.35, 0.6));
+    const GridVertices fine(all), coarse(few);
+    const auto said = render_node::errorsOf(fine, {32, 32, 65, 65}, sun, kFinest, shapes::kLevels - 1);
+    const auto right = render_node::errorsOf(coarse, {8, 8, 17, 17}, sun, 0, shapes::kLevels - 1 - kFinest);
+    for (int level = 0; level < shapes::kLevels; ++level) {
+        const float height = level <= kFinest ? 0.0F : right.height.at(static_cast<std::size_t>(level - kFinest));
+        EXPECT_FLOAT_EQ(said.height.at(static_cast<std::size_t>(level)), height) << "level " << level;
+        EXPECT_EQ(said.light.at(static_cast<std::size_t>(level)) > 0, level > kFinest) << "level " << level;
     }
 }
 
@@ -172,15 +195,18 @@ TEST(Levels, AreThoseOfEveryTileOfAPlane) {
         for (std::size_t level = 1; level < shapes::kLevels; ++level) {
             errors.height[level] = static_cast<float>(random(source, 1e-3)) + errors.height[level - 1];
         }
-        std::array<int, shapes::kLevels> asked{}, moving{};
+        std::array<int, shapes::kLevels> asked{}, moving{}, shown{};
         for (const walls::Tile& tile : wall.tiles) {
             const auto seen = walls::viewOf(tile.screen, wall.viewer.eye, wall.clip.near, wall.clip.far);
             const render_node::LevelRule rule(seen.viewProjection * sceneToRoom, tile.pixels, 0.5);
-            ++asked.at(static_cast<std::size_t>(rule.level({low, low + 0.03}, errors, shapes::kLevels - 1)));
+            const int finest = rule.finest({low, low + 0.03}, cell / 8, shapes::kLevels - 1);
+            ++shown.at(static_cast<std::size_t>(finest));
+            ++asked.at(static_cast<std::size_t>(rule.level({low, low + 0.03}, errors, finest, shapes::kLevels - 1)));
             ++moving.at(static_cast<std::size_t>(
                 rule.levelWhileMoving({low, low + glm::dvec3(0.03, 0.03, 0.02)}, cell, shapes::kLevels - 1).value()));
         }
         EXPECT_EQ(*std::ranges::max_element(asked), static_cast<int>(wall.tiles.size())) << "box " << i;
+        EXPECT_EQ(*std::ranges::max_element(shown), static_cast<int>(wall.tiles.size())) << "box " << i;
         EXPECT_EQ(*std::ranges::max_element(moving), static_cast<int>(wall.tiles.size())) << "box " << i;
         coarse += asked[0] == 0 ? 1 : 0;
     }
@@ -281,6 +307,35 @@ TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
     fresh.setTool(replica_.probe(), replica_.engaged());
     const auto camera = sample::camera(head, head + glm::dvec3(0, 0.25, -0.35));
     EXPECT_TRUE(sample::draw(fresh, camera, whole) == targets[0].read());
+}
+
+/// Returns the mean of a picture's channels [level].
+double meanOf(const sample::Pixels& picture) {
+    return std::accumulate(picture.begin(), picture.end(), 0.0) / static_cast<double>(picture.size());
+}
+
+// Each cell of rough sand differs from its neighbours, so that errors alone would ask for every cell.
+TEST(FineCells, CostByThePixel) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
+    scene::Scene scene = sample::flatScene(1024, 512);
+    std::mt19937 source(7);
+    for (int row = 0; row < 512; ++row) {
+        for (int column = 0; column < 1024; ++column) {
+            scene.terrain.setHeight(column, row, static_cast<std::int32_t>(source() % 8) * sand::kUnitsPerCell);
+        }
+    }
+    const sand::Replica replica(scene);
+    constexpr int kPixelsAcross = 128, kPixelsDown = 96;  // 8 cells a pixel along each side
+    const EyeTarget target(kPixelsAcross, kPixelsDown);
+    const render_node::Camera camera = sample::camera({1, 0.5, 2}, {1, 0.5, 0});
+    ScenePainter view(scene, glm::dmat4(1));
+    view.update(replica.surface().data(), {});
+    const sample::Pixels usual = sample::draw(view, camera, target);
+    EXPECT_LT(view.counts().triangles, 16 * kPixelsAcross * kPixelsDown);
+    view.setDetail(0);
+    const sample::Pixels exact = sample::draw(view, camera, target);
+    EXPECT_GT(view.counts().triangles, 2 * 1000 * 500);
+    EXPECT_NEAR(meanOf(usual), meanOf(exact), 2) << "the sand is as bright";
 }
 
 }  // namespace
