@@ -80,8 +80,8 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
 }
 
 std::size_t Erosion::bytes() const {
-    return east_.bytes() + north_.bytes() + marked_.bytes() + moved_.bytes() + flowed_.bytes() + walk_.bytes() +
-           (active_.capacity() + swept_.capacity()) * sizeof active_[0];
+    return east_.bytes() + north_.bytes() + written_.size() + marked_.bytes() + moved_.bytes() + flowed_.bytes() +
+           walk_.bytes() + (active_.capacity() + swept_.capacity()) * sizeof active_[0];
 }
 
 Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle,
@@ -91,6 +91,7 @@ Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const O
     for (int n = 0; n < part.sweeps && !settled(); ++n) {
         const float momentum = std::max(momentumAfter<float>(part.first + n, dampingOf(part.whole)),
                                         momentumAfter<float>(undisturbed_, kMostDamping));
+        leaveOutResting(field);
         swept_.clear();
         for (const CellRect& run : active_) {
             swept_.push_back(cellsOf(run));
@@ -99,7 +100,7 @@ Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const O
             std::for_each(swept_.begin(), swept_.end(), willChange);
         }
         noteWritten();
-        outflow += sweepOnce(field, momentum, obstacle);
+        outflow += swept_.empty() ? 0 : sweepOnce(field, momentum, obstacle);
         markAroundMoved();
         ++sweepsDone_;
         const bool still = marked_.empty();
@@ -187,6 +188,10 @@ void Erosion::resume(const Inertia& inertia) {
     }
     std::fill(written_.begin(), written_.end(), Written::no);
     inertia.putInto(east_, north_);
+    inertia.visitAreas([this](const CellRect& cells) {
+        const int first = std::max(cells.y0, 0) / blockSize_, last = (cells.y1 - 1) / blockSize_;
+        std::fill(written_.begin() + first, written_.begin() + std::max(first, last) + 1, Written::lately);
+    });
     undisturbed_ = inertia.undisturbed();
     // A sweep in which an executor threw has left numbers there.
     flowed_ = FlowBits(across_, down_);

@@ -47,7 +47,7 @@ public:
         bool skipSettled = true;
     };
 
-    /// Prepares the sweeps of `field`. The first sweep visits every block.
+    /// Prepares the sweeps of `field`. The first sweep visits every block that is not certainly at rest.
     Erosion(const HeightField& field, const Rules& rules, const Options& options);
     Erosion(const HeightField& field, const Rules& rules) : Erosion(field, rules, Options{}) {}
 
@@ -115,6 +115,9 @@ private:
     void markAroundMoved();
     /// Adds the marked blocks to the active ones.
     void wakeTouched();
+    /// Removes active blocks that are certainly at rest, where no flux has been written. A field of which little moves
+    /// then needs little memory for fluxes, although its first sweep visits all blocks.
+    void leaveOutResting(const HeightField& field);
     /// Notes that fluxes of the active blocks may be written.
     void noteWritten();
     /// Gives the memory of fluxes back to the system where sand has rested for a while.
@@ -128,8 +131,9 @@ private:
     // across the western and the southern rim. All fluxes of a block that is not active are 0.
     CellArray east_, north_;
     enum class Written : std::uint8_t { no, earlier, lately };
-    std::vector<Written> written_;  // by row of blocks: whether its fluxes take memory, and since when
-    int calls_ = 0;                 // of sweep() since releaseRest() has last looked at written_
+    // By row of blocks: whether its fluxes may differ from 0 or take memory, and since when.
+    std::vector<Written> written_;
+    int calls_ = 0;  // of sweep() since releaseRest() has last looked at written_
     std::int64_t sweepsDone_ = 0;
     int undisturbed_ = 0;  // age of the inertia [sweep]
     // Runs of blocks within one row of blocks, row by row from the south-west [block]. Runs of a row do not touch.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Choice of the blocks that are swept.
 #include <algorithm>
+#include <utility>
 
 #include "sand/grid/erosion.hpp"
+#include "sand/grid/resting_blocks.hpp"
 
 namespace sand::grid {
 
@@ -62,6 +64,26 @@ void Erosion::markAroundMoved() {
         marked_.addBeside(run, flowed_);
         std::fill(flowed_.row(run.y0) + run.x0, flowed_.row(run.y0) + run.x1, std::uint8_t{0});
     }
+}
+
+void Erosion::leaveOutResting(const HeightField& field) {
+    const auto unwritten = [this](const CellRect& run) {
+        return written_[static_cast<std::size_t>(run.y0)] == Written::no;
+    };
+    if (options_.ground != nullptr || !options_.skipSettled ||
+        std::none_of(active_.begin(), active_.end(), unwritten)) {
+        return;
+    }
+    RestingBlocks resting(field, rules_, blockSize_);
+    std::vector<CellRect> others;
+    for (const CellRect& run : active_) {
+        if (unwritten(run)) {
+            resting.appendOthers(run, others);
+        } else {
+            others.push_back(run);
+        }
+    }
+    active_ = std::move(others);
 }
 
 void Erosion::noteWritten() {

@@ -39,6 +39,13 @@ public:
     /// Writes the kept fluxes into `east` and `north`, whose fluxes must be 0.
     void putInto(CellArray& east, CellArray& north) const;
     [[nodiscard]] int undisturbed() const { return undisturbed_; }  // age of the inertia [sweep]
+    /// Calls visit(cells) for each area whose fluxes are kept. It may begin at column or row -1.
+    template <class Visit>
+    void visitAreas(const Visit& visit) const {
+        for (const Piece& piece : pieces_) {
+            visit(piece.cells);
+        }
+    }
 
     /// Writes the fluxes as two whole grids of a field of this size. The division into pieces makes no difference.
     /// Calls `between` as encodeCells() does.

@@ -66,13 +66,32 @@ TEST(FluxMemory, SandThatSlidesKeepsItsFluxes) {
 }
 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-// The first sweep visits all blocks, and writes all fluxes.
-TEST(FluxMemory, IsGivenBackWhereSandRests) {
+/// Returns a field whose heights have their memory. Every second column is higher by `rise` [unit].
+HeightField ridges(std::int32_t rise) {
     HeightField field(kFluxColumns, 1024, 1.0);
     for (int y = 0; y < field.rows(); ++y) {
-        std::fill_n(field.row(y), field.columns(), 1);  // so that the heights have their memory
+        for (int x = 0; x < field.columns(); ++x) {
+            field.setHeight(x, y, 1 + x % 2 * rise);
+        }
     }
-    const sand::Rules rules = samples::rulesFor(field);
+    return field;
+}
+
+TEST(FluxMemory, IsNotTakenForGentleSand) {
+    const sand::Rules rules = samples::rulesFor(HeightField(kFluxColumns, 1024, 1.0));
+    HeightField field = ridges(rules.tuning.threshold / 2);
+    const std::int64_t before = test::residentBytes();
+    Erosion erosion(field, rules);
+    pileUpSand(field, erosion, 100, 8);
+    erosion.sweep(field, sand::SweepPart::all(8));
+    EXPECT_LE(test::residentBytes() - before, 8 << 20) << "two fluxes of 64 MiB";
+    EXPECT_FALSE(erosion.settled());
+}
+
+// The slopes are below the threshold, but not by much. Only a visit finds that this sand rests.
+TEST(FluxMemory, IsGivenBackWhereSandRests) {
+    const sand::Rules rules = samples::rulesFor(HeightField(kFluxColumns, 1024, 1.0));
+    HeightField field = ridges(rules.tuning.threshold - 1);
     const std::int64_t before = test::residentBytes();
     Erosion erosion(field, rules);
     erosion.sweep(field, sand::SweepPart::all(1));
