@@ -4,6 +4,7 @@
 The machine of the launcher decides at run time, because on a cluster the mpirun there counts and not that of the build.
 """
 
+import contextlib
 import dataclasses
 import glob
 import itertools
@@ -11,6 +12,7 @@ import os
 import re
 import shlex
 import shutil
+import socket
 import stat
 import subprocess
 import tempfile
@@ -69,10 +71,12 @@ class OpenMpi4:
 
     def command(self, job):
         # -q, because our own line reports the failure. With tags, the launcher also reads mpirun's lines about ended ranks.
-        # Then mpirun prints which signal ended which rank. It does not wait a second for the others, which have already ended.
-        output = ["-q"] if job.output is None else ["--tag-output", "--mca", "odls_base_sigkill_timeout", "0"]
+        # Then mpirun prints which signal ended which rank.
+        output = ["-q"] if job.output is None else ["--tag-output"]
+        # A job that ends by signals has nothing to keep. By default mpirun waits a second before it kills the last processes.
+        at_once = ["--mca", "odls_base_sigkill_timeout", "0"]
         own_hosts = [word for name, value in OWN_HOSTS_4.items() for word in ("--mca", name, value)]
-        return ["mpirun", *output, "--oversubscribe", "--bind-to", "none", *own_hosts, *self.transport(job), *passed_on(job), *self.programs(job)]
+        return ["mpirun", *output, "--oversubscribe", "--bind-to", "none", *at_once, *own_hosts, *self.transport(job), *passed_on(job), *self.programs(job)]
 
     def transport(self, job):
         """Returns the options for communication: shared memory within a host, TCP between hosts."""
@@ -106,7 +110,9 @@ class OpenMpi4:
         return {}
 
     def tidy(self, pid):
-        """Removes what the mpirun with this process id has left behind."""
+        """Removes what the mpirun with this process id has left behind: its folder, if it was killed, or ended by a signal at its start."""
+        host = glob.escape(socket.gethostname().partition(".")[0])
+        remove_folders(os.path.join(f"ompi.{host}*.{os.geteuid()}", f"pid.{int(pid)}"))
 
 
 class OpenMpi5:
@@ -182,10 +188,30 @@ class OpenMpi5:
 
     def tidy(self, pid):
         """After a job that failed, prterun leaves its folder in the folder for temporary files."""
-        for folder in glob.glob(os.path.join(glob.escape(tempfile.gettempdir()), f"prterun.*.{int(pid)}.*")):
-            about = os.lstat(folder)
-            if stat.S_ISDIR(about.st_mode) and about.st_uid == os.geteuid():
-                shutil.rmtree(folder, ignore_errors=True)
+        remove_folders(f"prterun.*.{int(pid)}.*")
+
+
+def remove_folders(pattern):
+    """Removes the folders of this user in the folder for temporary files whose path matches `pattern`. Follows no link."""
+    base = tempfile.gettempdir()
+    for folder in glob.glob(os.path.join(glob.escape(base), pattern)):
+        above = os.path.dirname(folder)
+        if is_own_folder(folder) and (above == base or is_own_folder(above)):
+            shutil.rmtree(folder, ignore_errors=True)
+            if above != base:
+                with contextlib.suppress(OSError):  # another job has its folder there
+                    os.rmdir(above)
+
+
+def is_own_folder(path):
+    about = os.lstat(path)
+    return stat.S_ISDIR(about.st_mode) and about.st_uid == os.geteuid()
+
+
+def tidy_after(pid):
+    """Removes what an mpirun of any version with this process id has left behind."""
+    for kind in (OpenMpi4, OpenMpi5):
+        kind("").tidy(pid)
 
 
 # Open MPI sends a variable of this machine's environment to the other hosts only with -x.

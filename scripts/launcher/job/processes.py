@@ -20,8 +20,10 @@ from job.mpirun_end import EndWatch
 SERVER_START_SECONDS = 20  # until the server listens, which it does before it reads its scene
 SERVER_READY_SECONDS = 0.4  # after that the time that the server gets to read a small scene, so that its complaints come before the job
 ORDERLY_END_SECONDS = 120  # pictures of a large wall take their time
-START_END_SECONDS = 1.5  # before the first frame, when nothing must be kept
+START_END_SECONDS = 0.5  # before the first frame, when nothing must be kept; mpirun may take another second
 KILL_SECONDS = 5
+GUARD_SECONDS = 1  # the time that mpirun gets to end its processes if the launcher ends before the first frame
+STOPPED_STATUS = 76  # of a master whose input ended before the first frame (master/operator/input_watch.hpp)
 STUCK_STATUS = 1  # of a job whose mpirun had to be killed because it did not end after its last process
 CRASHES = (signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS)
 CRASHED_STATUS = 1  # of a session whose mpirun has crashed; Open MPI 4.1 sometimes does when it ends after a failed rank
@@ -86,9 +88,11 @@ class HapticServer:
 
     `command_at(address, start)` returns the command for an address to listen at and the number of the start. Only the main
     thread may start the server, because the kernel kills a server that still begins when the thread that started it ends.
+    `stop` counts signals, as StopSignals does.
     """
 
-    def __init__(self, command_at, folder):
+    def __init__(self, command_at, folder, stop):
+        self.stop_signals = stop
         self.command_at = command_at
         self.port_file = pathlib.Path(folder) / "port"
         self.ready_file = pathlib.Path(folder) / "ready"
@@ -122,24 +126,31 @@ class HapticServer:
             return None
 
     def wait(self, done, seconds):
-        """Waits until done(), at most `seconds`. Throws BadInput or SystemExit if the server has refused its input."""
+        """Waits until done() or a signal, at most `seconds`. Throws BadInput or SystemExit if the server has ended or refused its input."""
         deadline = time.monotonic() + seconds
-        while not done() and time.monotonic() < deadline:
+        while not done() and time.monotonic() < deadline and self.stop_signals.count == 0:
             if error := self.scene_error():
                 raise BadInput(error)
-            if self.process.poll() is not None:
-                raise SystemExit(self.process.returncode if self.process.returncode > 0 else 1)  # the server has printed the reason
+            status = self.process.poll()
+            if status is not None:
+                if status < 0:  # else the server has printed the reason
+                    print_line(f"the haptic server was killed by signal {-status} before it had read the scene")
+                raise SystemExit(status if status > 0 else 1)
             time.sleep(0.01)
 
     def address(self):
         """Waits until the server listens and has had the time for a small scene, and returns HOST:PORT.
 
-        Throws BadInput after SERVER_START_SECONDS, or if the server has refused the scene.
+        Returns None after a signal that asks the session to end. Throws BadInput after SERVER_START_SECONDS, or if the
+        server has refused the scene.
         """
         self.wait(self.listens, SERVER_START_SECONDS)
+        if self.listens():
+            self.wait(self.is_ready, SERVER_READY_SECONDS)
+        if self.stop_signals.count > 0:
+            return None
         if not self.listens():
             raise BadInput(f"the haptic server did not listen within {SERVER_START_SECONDS} s")
-        self.wait(self.is_ready, SERVER_READY_SECONDS)
         self.port = int(self.port_file.read_text())
         return f"127.0.0.1:{self.port}"
 
@@ -159,8 +170,8 @@ class HapticServer:
 class Job:
     """The mpirun of a session, in its own process group. It is asked to stop over its standard input.
 
-    The output of the job goes to the log if there is one, else to the launcher's output. The job ends when its input ends. A
-    guard (job_guard.py) sees to that if the launcher ends.
+    The output of the job goes to the log if there is one, else to the launcher's output. The job ends when its input ends: at
+    once before its first frame, and in order after it. A guard (job_guard.py) sees to that if the launcher ends.
     """
 
     started = 0
@@ -177,6 +188,8 @@ class Job:
         self.deadline = None
         self.asked = self.terminated = self.stuck = False
         self.brief = False  # whether the job was asked to stop before its first frame
+        self.close_at = None  # time at which the input is closed [s]; only a job that starts ends then
+        self.ended_at_start = False  # whether the master has ended because its input was closed
         self.end_watch = EndWatch(self.process.pid)
 
     def ask(self, command):
@@ -197,12 +210,15 @@ class Job:
         if not self.asked:
             self.asked = True
             self.brief = self.starts()
-            self.deadline = time.monotonic() + (START_END_SECONDS if self.brief else ORDERLY_END_SECONDS)
+            now = time.monotonic()
+            self.deadline = now + (START_END_SECONDS if self.brief else ORDERLY_END_SECONDS)
+            if self.fresh and self.log is None:  # without a log, only the master knows whether there was a frame
+                self.close_at = now + START_END_SECONDS
             self.ask("stop")
 
     def ended_before_its_first_frame(self):
-        """Returns whether signals have ended the job because it was asked to stop before its first frame."""
-        return self.brief and self.terminated
+        """Returns whether the job was ended at once because it was asked to stop before its first frame."""
+        return (self.brief and self.terminated) or self.ended_at_start
 
     def starts(self):
         """Returns whether the session has shown no frame yet, as far as the log of this job tells."""
@@ -218,8 +234,13 @@ class Job:
             self.log.follow(ended=status is not None)
         if status is not None:
             self.guard.end()
+            self.ended_at_start = self.asked and status == STOPPED_STATUS
             return STUCK_STATUS if self.stuck else status
+        if self.log is None or self.log.frame is not None:
+            self.guard.end_in_order()
         now = time.monotonic()
+        if self.close_at is not None and now > self.close_at:
+            self.process.stdin.close()
         if not self.stuck and self.end_watch.stuck(now):
             self.stuck = True
             print_line("mpirun does not end after its last process; killing it")
@@ -252,9 +273,13 @@ class Job:
 
 
 class Guard:
-    """The process that ends a job if the launcher ends. `outputs` are the pipes of the job's output, which it then empties."""
+    """The process that ends a job if the launcher ends: at once, or in order after end_in_order().
+
+    `outputs` are the pipes of the job's output, which it then empties.
+    """
 
     def __init__(self, mpirun, mark, outputs):
+        self.in_order = False
         life, self.life = os.pipe2(os.O_CLOEXEC)
         command = [sys.executable, "-S", str(pathlib.Path(__file__).with_name("job_guard.py")), str(life), str(mpirun), f"{MARK}={mark}",
                    *map(str, outputs)]
@@ -263,6 +288,12 @@ class Guard:
                                             pass_fds=[life, *outputs], start_new_session=True)
         finally:
             os.close(life)
+
+    def end_in_order(self):
+        """Lets the job end in order if the launcher ends, because it has shown a frame. Without a log, nobody knows that it has not."""
+        if not self.in_order:
+            self.in_order = True
+            os.write(self.life, b"\n")
 
     def end(self):
         """Ends the guard. Call it after the end of the job."""
@@ -273,9 +304,9 @@ class Guard:
             self.life = None
 
 
-def clear(mark, meanwhile=lambda: None):
-    """Waits until no process has `mark` in its environment, and kills those that do not end. Calls meanwhile() again and again."""
-    deadline = time.monotonic() + KILL_SECONDS
+def clear(mark, meanwhile=lambda: None, seconds=None):
+    """Waits until no process has `mark` in its environment, and kills those that do not end in `seconds`. Calls meanwhile() again and again."""
+    deadline = time.monotonic() + (KILL_SECONDS if seconds is None else seconds)
     while left := marked(mark):
         if time.monotonic() > deadline:
             for process in left:

@@ -6,7 +6,6 @@ import os
 import pathlib
 import re
 import shutil
-import tempfile
 import time
 
 from ask import session_control
@@ -14,6 +13,7 @@ from base import console, events, marked_answer, session_folder
 from base.bad_input import BadInput
 from base.command_line import NOT_YET
 from base.console import print_line
+from base.temporary_folder import TemporaryFolder
 from hosts import machine_needs
 from job import job_log
 from job.processes import HapticServer, Input, Job, exit_status
@@ -28,6 +28,7 @@ FIRST_WAIT, LONGEST_WAIT = 1, 8  # wait before the second restart in a row, and 
 ENDED_IN_ORDER = ("sand", "summary")  # `what` of failure.json, after which a restart would not help
 KILLS = ("SIGKILL", "SIGTERM")  # signals from outside, such as of a system without memory
 JOURNAL = "session.journal"
+STOPPED = "stopped before the first frame"
 MASTERS = "sandwall-master: "  # begins a line of the master
 
 
@@ -94,13 +95,16 @@ class Supervisor:
         self.logs = None  # folder of the logs; without --restarts a temporary one, or None if the output is not kept
 
     def run(self):
-        with tempfile.TemporaryDirectory(prefix="sandwall-") as folder:
+        with TemporaryFolder() as folder:
             server = None
             try:
                 if self.server_at:
-                    server = HapticServer(self.server_at, folder)
+                    server = HapticServer(self.server_at, folder, self.stop)
                     server.start()
                     self.haptic = server.address()
+                    if self.haptic is None:
+                        print_line(STOPPED)
+                        return 0
                     self.watch = self.watch_of(server)
                 if self.supervised:
                     self.logs = self.prepare_logs(folder)
@@ -163,7 +167,7 @@ class Supervisor:
                 if self.gave_up:
                     return BAD_INPUT if self.watch.refuses else FAILED
                 if self.job.ended_before_its_first_frame():
-                    print_line("stopped before the first frame")
+                    print_line(STOPPED)
                     return 0
                 return exit_status(status)
             if (content_of(self.out / "failure.json") or log.failure or {}).get("what") in ENDED_IN_ORDER:

@@ -128,9 +128,14 @@ class Flood(Supervised):
         self.assertIn(b"the last line\n", log[-200:])
 
     def test_a_job_whose_launcher_is_killed_can_go_on_printing_and_ends_in_order(self):
-        self.tries("progress 1 1; read -r line; head -c 5000000 /dev/zero | tr '\\0' x && touch $folder/done; exit 0")
+        self.tries("progress 1 1; until [ -e $folder/seen ]; do sleep 0.05; done; progress 2 2; "
+                   "read -r line; head -c 5000000 /dev/zero | tr '\\0' x && touch $folder/done; exit 0")
+        self.environment["SANDWALL_EVENTS"] = "1"
         process = self.begin(["-"])
-        self.wait_for("journal", (self.folder / "out/session.journal").exists)
+        for frame in (1, 2):  # the launcher looks for frames between these two lines
+            while f'"frame":{frame},' not in process.stderr.readline():
+                self.assertIsNone(process.poll())
+            self.write("seen", "")
         process.kill()
         process.wait(60)
         self.wait_for("orderly end", (self.folder / "done").exists)
@@ -165,6 +170,29 @@ class Guard(unittest.TestCase):
         process, mark = self.begin("echo begun; sleep 0.3; exit 7")
         job_guard.end(process.pid, mark, [])
         self.assertEqual(process.wait(60), 7)
+
+    def test_a_job_without_a_frame_is_ended_at_once(self):
+        process, mark = self.begin("sleep 1000 & echo begun; wait")
+        job_guard.end(process.pid, mark, [], in_order=False)
+        self.assertEqual(process_marks.marked(mark), [])
+        self.assertEqual(process.wait(60), -15, "it may remove its files")
+
+    def test_a_job_without_a_frame_that_does_not_end_is_killed(self):
+        process, mark = self.begin("trap '' TERM; sleep 1000 & setsid sleep 1000 & echo begun; wait")
+        job_guard.end(process.pid, mark, [], in_order=False)
+        self.assertEqual(process_marks.marked(mark), [])
+        self.assertEqual(process.wait(60), -9)
+
+    def test_a_guard_ends_in_order_what_has_shown_a_frame_and_all_else_at_once(self):
+        for in_order, status in ((True, 7), (False, -15)):
+            with self.subTest(in_order=in_order):
+                process, mark = self.begin("echo begun; sleep 2; exit 7")
+                guard = processes.Guard(process.pid, mark.decode().partition("=")[2], [])
+                if in_order:
+                    guard.end_in_order()
+                os.close(guard.life)  # as when the launcher has been killed
+                self.assertEqual(process.wait(60), status)
+                self.assertEqual(guard.process.wait(60), 0)
 
     def test_another_process_with_its_number_is_left_alone(self):
         process, _ = self.begin("echo begun; sleep 0.3; exit 7")

@@ -134,6 +134,31 @@ class Stopping(Supervised):
             (self.folder / "tries").unlink(missing_ok=True)
             self.assertEqual(self.ended(["-"], "--restarts", "0")[0], status, name)
 
+    def killed_at_its_start(self, script):
+        """Kills the launcher before its first frame, and waits until nothing of the job is left."""
+        self.tries(f"touch $folder/began; {script}")
+        self.environment["TMPDIR"] = str(self.folder / "temporary")
+        (self.folder / "temporary").mkdir()
+        process = self.begin(["-"])
+        self.wait_for("job", (self.folder / "began").exists)
+        process.kill()
+        process.wait(60)
+        self.wait_for("end", lambda: not any(f"SANDWALL_JOB={process.pid}-" in text for text in environments()))
+        self.wait_for("removal", lambda: not list((self.folder / "temporary").iterdir()))
+
+    def test_a_launcher_that_is_killed_before_the_first_frame_ends_its_job_at_once(self):
+        # The made-up mpirun would read the scene for an hour. It does not notice that its input has ended.
+        self.killed_at_its_start("exec sleep 3600")
+
+    def test_a_deaf_job_of_a_launcher_that_is_killed_before_the_first_frame_is_killed(self):
+        self.killed_at_its_start("trap '' TERM HUP INT; sleep 3600 & setsid sleep 3600; sleep 3600")
+
+    def test_one_ctrl_c_ends_the_start_of_a_job_without_a_log_by_the_end_of_its_input(self):
+        self.tries("touch $folder/began; while read -r line; do :; done; exit 76")
+        status, error = self.stopped_at_its_start("--restarts", "0")
+        self.assertEqual(status, 0, error)
+        self.assertIn("sandwall: stopped before the first frame\n", error)
+
     def test_a_killed_launcher_leaves_nothing(self):
         self.tries("progress 1 1; read -r line; exit 1")
         process = self.begin(["-"])
