@@ -296,6 +296,7 @@ void serve(const ServerOptions& options) {
 
     DeviceWatch watch(io, options.device, hand);
     signals.onFirst([&listener] { listener.shut("the server was stopped"); });
+    startIsOver();
     if (!io.stopped()) {  // no signal came while the device opened
         listener.serve(sandThread);
         open = &listener;

@@ -133,4 +133,19 @@ TEST_F(ParentWatch, KillsAProcessThatDoesNotEndByItself) {
     EXPECT_EXIT((signal(SIGTERM, SIG_IGN), outlive()), testing::KilledBySignal(SIGKILL), "");
 }
 
+/// Begins an hour of patience and waits up to `seconds`.
+[[noreturn]] void outliveFor(unsigned seconds) {
+    signal(SIGTERM, SIG_IGN);
+    haptic_bridge::endWithParent(getppid() + 1, std::chrono::hours(1));
+    for (unsigned left = seconds; left > 0;) {
+        left = sleep(left);
+    }
+    std::_Exit(7);
+}
+
+TEST_F(ParentWatch, HasLessPatienceWithAProcessThatStarts) {
+    EXPECT_EXIT(outliveFor(60), testing::KilledBySignal(SIGKILL), "");
+    EXPECT_EXIT((haptic_bridge::startIsOver(), outliveFor(2)), testing::ExitedWithCode(7), "");
+}
+
 }  // namespace
