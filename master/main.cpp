@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <exception>
@@ -21,6 +23,7 @@
 #include "lockstep/watchdog.hpp"
 #include "master/measure/failure_report.hpp"
 #include "master/measure/rank_labels.hpp"
+#include "master/operator/input_watch.hpp"
 #include "master/operator/verbs.hpp"
 #include "master/program_options.hpp"
 #include "master/session.hpp"
@@ -54,6 +57,11 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
     std::optional<host::WorkerPool> pool;
     bool sessionOpen = false;
     setLastWords(cluster, options, nullptr);
+    std::optional<master::InputWatch> inputWatch;
+    if (options.session.desk.readInput) {
+        inputWatch.emplace(STDIN_FILENO, master::endForLackOfInput);
+        options.session.firstFrameShown = [&inputWatch] { inputWatch.reset(); };
+    }
     try {
         pool.emplace(options.sandThreads);
         options.session.executor = pool->lend();

@@ -41,7 +41,8 @@ void describeSession(host::CommandLine& line, ProgramOptions& options) {
     line.flag("--no-pictures", options.noPictures, "write no pictures at the end").offeredBy({"run"});
     line.flag("--no-report", options.noReport, "print no figures at the end, because another program prints them");
     line.flag("--control-stdin", session.desk.readInput,
-              "read commands from standard input (docs/operator.md); its end stops the session");
+              "read commands from standard input (docs/operator.md); its end stops the session, before the first frame "
+              "at once");
     line.option("--place", options.places,
                 "RANK,RANK=HOST=MACHINE: machine on which these ranks must run, from the launcher (docs/hosts.md)");
     line.option("--inject", options.injections, "drill, such as slow:rank=5,ms=30; docs/operator.md")

@@ -258,8 +258,12 @@ bool Session::agree(const lockstep::FrameMessage& frame) {
 
 int Session::run() {
     bool agreed = true;
+    bool shown = false;
     for (bool more = true; agreed && more;) {
         agreed = showFrame(more);
+        if (agreed && !std::exchange(shown, true) && options_.firstFrameShown) {
+            options_.firstFrameShown();
+        }
         if (agreed) {
             printProgress(!more);
         }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -44,7 +45,8 @@ struct SessionOptions {
     std::shared_ptr<const journal::Recording> recording;  // source of the steps of a replay, which writes no journal
     bool film = false;                                    // writes a picture of every frame, and no other pictures
     std::optional<FilmEye> filmEye;
-    std::vector<Drill> drills;  // drills that are still to happen
+    std::vector<Drill> drills;              // drills that are still to happen
+    std::function<void()> firstFrameShown;  // called once, on the main thread
 };
 
 /// Returns `options` adapted to their recording, if there is one.
