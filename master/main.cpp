@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <optional>
 #include <string>
@@ -51,7 +52,10 @@ void setLastWords(const lockstep::Cluster& cluster, const master::ProgramOptions
     });
 }
 
-int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options) {
+using LastCheckpoint = std::optional<master::Session::LastCheckpoint>;
+
+/// `last` gets a checkpoint that was still being written at the end.
+int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options, LastCheckpoint& last) {
     std::optional<master::World> world;
     std::optional<master::MasterSand> sand;
     std::optional<host::WorkerPool> pool;
@@ -100,13 +104,30 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
         master::Session session(cluster, world->scene, world->wall, options.session, std::move(*sand));
         world->scene.dropHeights();
         world->message = {};
-        return session.run();
+        const int status = session.run();
+        last = session.takeUnfinished();
+        return status;
     } catch (const std::exception& error) {
         // The ranks are in the middle of a frame and cannot be asked to end.
         const bool input = dynamic_cast<const base::InputError*>(&error) != nullptr;
         host::printLine("{}", error.what());
         cluster.abort(input ? base::kExitBadInput : 1);
     }
+}
+
+/// Runs the session from the start of MPI to its end.
+int runJob(host::CommandLine& line, int argc, char** argv, master::ProgramOptions& options, LastCheckpoint& last) {
+    // Open MPI starts before the options are checked, because mpirun counts a process that ends without it as crashed.
+    lockstep::Cluster cluster(&argc, &argv);
+    bool parsed = false;
+    const int status = host::runMain(line, argc, argv, [&] {
+        parsed = true;
+        return runSession(cluster, options, last);
+    });
+    if (!parsed) {
+        (void)lockstep::broadcastSession(cluster, std::nullopt);
+    }
+    return status;
 }
 
 }  // namespace
@@ -129,15 +150,11 @@ int main(int argc, char** argv) {
     }
     lockstep::endWithParent();
     host::sendRankLog();
-    // Open MPI starts before the options are checked, because mpirun counts a process that ends without it as crashed.
-    lockstep::Cluster cluster(&argc, &argv);
-    bool parsed = false;
-    const int status = host::runMain(line, argc, argv, [&] {
-        parsed = true;
-        return runSession(cluster, options);
-    });
-    if (!parsed) {
-        (void)lockstep::broadcastSession(cluster, std::nullopt);
+    LastCheckpoint last;
+    const int status = runJob(line, argc, argv, options, last);
+    // The ranks have ended, so that no limit of theirs ends a checkpoint that takes long.
+    if (last && !master::finishUnlessSignalled(last->checkpoint, last->dispensable)) {
+        std::_Exit(status);  // the destructor would wait for the thread
     }
     if (status == 0) {
         host::removeRankLog();

@@ -46,6 +46,14 @@ public:
     /// confirm the sand, or if the summary could not be written. Throws DiskFailure if the disk refuses the journal
     /// under the policy `required`, and base::InputError if a picture cannot be written.
     int run();
+    /// A checkpoint that was still being written at the end, and whether the session can do without it.
+    struct LastCheckpoint {
+        UnfinishedCheckpoint checkpoint;
+        bool dispensable;
+    };
+    /// Returns the checkpoint that is to be finished when no rank waits any more; nullopt if there is none. Call it
+    /// after run().
+    [[nodiscard]] std::optional<LastCheckpoint> takeUnfinished();
 
 private:
     /// Shows one frame. Returns whether all ranks agreed. Sets `more` to whether another frame follows.

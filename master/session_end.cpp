@@ -49,6 +49,11 @@ int Session::writeResults(bool agreed) {
     return status;
 }
 
+std::optional<Session::LastCheckpoint> Session::takeUnfinished() {
+    std::optional<UnfinishedCheckpoint> unfinished = record_.takeUnfinished();
+    return unfinished ? std::optional<LastCheckpoint>({std::move(*unfinished), record_.hasCheckpoint()}) : std::nullopt;
+}
+
 /// Ends the link and the journal, and returns the results. `agreed`: the ranks agreed to the end.
 Summary Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());

@@ -131,6 +131,10 @@ void SessionRecord::finish(const MasterSand& sand, bool agreed) {
     }
 }
 
+std::optional<UnfinishedCheckpoint> SessionRecord::takeUnfinished() {
+    return journal_ ? journal_->takeUnfinished() : std::nullopt;
+}
+
 std::filesystem::path SessionRecord::journalFile() const {
     // If this session writes no journal, a journal in the folder belongs to another session or ends too early.
     return journal_ && journal_->written() ? out_ / "session.journal" : std::filesystem::path();

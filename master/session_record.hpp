@@ -60,6 +60,9 @@ public:
     void shown(const Swap& swap, std::uint64_t frame, const MasterSand& sand, std::uint32_t epoch);
     /// Writes the journal's orderly end if `agreed`, which means that the ranks agreed to the end.
     void finish(const MasterSand& sand, bool agreed);
+    /// Return the checkpoint that is still being written after finish(), and whether an older one is on disk.
+    [[nodiscard]] std::optional<UnfinishedCheckpoint> takeUnfinished();
+    [[nodiscard]] bool hasCheckpoint() const { return journal_ && journal_->hasCheckpoint(); }
 
     /// Returns the incidents from before the last restart. The next two functions write all incidents to their file.
     [[nodiscard]] const Incidents& before() const { return incidents_.before(); }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -17,20 +18,42 @@
 #include "host/whole_file.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/file_parts.hpp"
+#include "sand/model/grid_codec.hpp"
 #include "scene/model/scene.hpp"
 
 namespace master {
 namespace {
 
 constexpr double kRetrySeconds = 1;
-constexpr const char* kBeyond = ".beyond";   // behind the name of a checkpoint that was set aside
-constexpr std::size_t kCheckpointsKept = 3;  // the newest two may be damaged
-constexpr const char* kLeftOut = "it is left out";
+constexpr const char* kBeyond = ".beyond";            // behind the name of a checkpoint that was set aside
+constexpr std::size_t kCheckpointsKept = 3;           // the newest two may be damaged
+constexpr std::chrono::milliseconds kHeldRanks{500};  // the most that the ranks wait for a checkpoint of the end
 
 bool hasSetAside(const std::filesystem::path& checkpoints) {
     std::error_code none;
     const std::filesystem::directory_iterator files(checkpoints, none);
     return std::any_of(begin(files), end(files), [](const auto& file) { return file.path().extension() == kBeyond; });
+}
+
+/// Compresses and writes a copy of the sand. `stripes` is about the number of pieces in which it is compressed.
+void writeCopy(std::shared_ptr<const sand::StateCopy> copy, Checkpoint checkpoint, const std::filesystem::path& journal,
+               double stripes, UnfinishedCheckpoint::Work& work) {
+    constexpr double kCompressing = 0.7;  // part of the time
+    constexpr double kPiece = 1 << 22;    // [byte] that writeCheckpoint() writes at once
+    const double compressed = stripes * (copy->beforeStroke != nullptr ? 2 : 1);
+    double done = 0;
+    checkpoint.state = copy->encode([&] {
+        work.setDone(kCompressing * std::min(1.0, ++done / compressed));
+        work.requireWanted();
+    });
+    copy.reset();
+    work.requireWanted();
+    const double pieces = std::ceil(static_cast<double>(checkpoint.state.size()) / kPiece);
+    done = 0;
+    writeCheckpoint(journal, checkpoint, kCheckpointsKept, [&] {
+        work.setDone(kCompressing + (1 - kCompressing) * std::min(1.0, ++done / pieces));
+        work.requireWanted();
+    });
 }
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -43,6 +66,7 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
       journal_(out / "session.journal"),
       buildId_(std::move(buildId)),
       sceneDigest_(scene.rules.digest()),
+      stripes_(std::ceil(static_cast<double>(scene.rules.columns) * scene.rules.rows / sand::kStripe)),
       lastCheckpoint_(now()) {
     if (options_.policy == JournalPolicy::off) {
         requireNoWriter();
@@ -72,7 +96,12 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
     lastCheckpoint_ -= options_.checkpointSeconds;
 }
 
-JournalKeeper::~JournalKeeper() { endCheckpoint(); }
+JournalKeeper::~JournalKeeper() {
+    if (checkpoint_ && !checkpoint_->endsWithin(UnfinishedCheckpoint::kPatience)) {
+        checkpoint_->leaveOut();
+    }
+    takeCheckpoint(true);
+}
 
 void JournalKeeper::requireNoWriter() const {
     std::uint32_t last = 1;
@@ -221,26 +250,13 @@ void JournalKeeper::checked(const journal::JournalChecked& checked) {
 
 void JournalKeeper::force(const journal::JournalForce& force) { note(force); }
 
-/// Waits for the checkpoint that is being written, at most for kPatience, and leaves it out then.
-void JournalKeeper::endCheckpoint() {
-    if (checkpoint_.valid() && checkpoint_.wait_for(kPatience) != std::future_status::ready) {
-        *leftOut_ = true;
-        checkpoint_.wait();
-    }
-    takeCheckpoint();
-}
-
-/// Takes the result of a checkpoint if it has been written.
-void JournalKeeper::takeCheckpoint() {
-    if (!checkpoint_.valid() || checkpoint_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+/// Takes the result of a checkpoint if it has been written, or waits for it.
+void JournalKeeper::takeCheckpoint(bool wait) {
+    if (!checkpoint_ || (!wait && !checkpoint_->endsWithin({}))) {
         return;
     }
-    const std::string complaint = checkpoint_.get();
-    if (complaint == kLeftOut) {
-        host::printLine("the checkpoint of step {} is left out, because it was not written within {} s",
-                        checkpointStep_, kPatience.count());
-        return;
-    }
+    const std::string complaint = checkpoint_->complaint();
+    checkpoint_.reset();
     checkpointsFailed_ += complaint.empty() ? 0 : 1;
     if (!complaint.empty() && complaint != complaint_) {  // printed once, even if it repeats
         host::printLine("{}; no checkpoint was written, and the session continues", complaint);
@@ -249,9 +265,9 @@ void JournalKeeper::takeCheckpoint() {
 }
 
 void JournalKeeper::shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
-    takeCheckpoint();
+    takeCheckpoint(false);
     const bool due = options_.checkpointSeconds > 0 && now() - lastCheckpoint_ >= options_.checkpointSeconds;
-    if (!writer_ || !due || doubted_ || checkpoint_.valid() || replica.stepNumber() == checkpointStep_) {
+    if (!writer_ || !due || doubted_ || checkpoint_ || replica.stepNumber() == checkpointStep_) {
         return;
     }
     lastCheckpoint_ = now();
@@ -259,29 +275,22 @@ void JournalKeeper::shown(const sand::Replica& replica, std::uint64_t frame, std
     auto copy = std::make_shared<const sand::StateCopy>(replica.copyState());
     copyMs_.push_back(1e3 * (now() - lastCheckpoint_));
     Checkpoint checkpoint{writer_->session(), buildId_, sceneDigest_, checkpointStep_, frame, epoch, hash, {}};
-    checkpoint_ = std::async(std::launch::async,
-                             [copy = std::move(copy), checkpoint, journal = journal_, leftOut = leftOut_]() mutable {
-                                 const auto requireWanted = [&leftOut] {
-                                     if (*leftOut) {
-                                         throw std::runtime_error(kLeftOut);
-                                     }
-                                 };
-                                 try {
-                                     checkpoint.state = copy->encode(requireWanted);
-                                     copy.reset();
-                                     requireWanted();
-                                     writeCheckpoint(journal, checkpoint, kCheckpointsKept, requireWanted);
-                                     return std::string();
-                                 } catch (const std::exception& error) {
-                                     return std::string(error.what());
-                                 }
-                             });
+    checkpoint_.emplace(checkpointStep_, [copy = std::move(copy), checkpoint, journal = journal_,
+                                          stripes = stripes_](UnfinishedCheckpoint::Work& work) mutable {
+        writeCopy(std::move(copy), std::move(checkpoint), journal, stripes, work);
+    });
 }
+
+std::optional<UnfinishedCheckpoint> JournalKeeper::takeUnfinished() { return std::exchange(checkpoint_, std::nullopt); }
+
+bool JournalKeeper::hasCheckpoint() const { return !checkpointsOf(journal_).empty(); }
 
 double JournalKeeper::stoppedSeconds() const { return stoppedSeconds_ + (stopped_ ? now() - stoppedSince_ : 0); }
 
 void JournalKeeper::finish(const journal::JournalEnd& end) {
-    endCheckpoint();
+    if (checkpoint_ && checkpoint_->endsWithin(kHeldRanks)) {
+        takeCheckpoint(true);
+    }
     try {
         if (writer_ && doubted_) {
             writer_->sync();

@@ -2,12 +2,8 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <future>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -16,6 +12,7 @@
 
 #include "base/names.hpp"
 #include "master/journal/resume.hpp"
+#include "master/journal/unfinished_checkpoint.hpp"
 #include "master/journal/writer.hpp"
 #include "sand/replica.hpp"
 #include "scene/model/scene.hpp"
@@ -66,7 +63,6 @@ public:
     /// Returns whether there is room for `bytes` bytes more, for example of sand that an operator asks to load.
     /// Returns false while the sand is stopped. The answer does not stop the sand.
     [[nodiscard]] bool hasRoomFor(std::int64_t bytes, const journal::JournalEnd& now);
-    static constexpr std::chrono::seconds kPatience{5};
     static constexpr std::int64_t kResumeBytes = 1 << 20;  // [byte], of steps in about three minutes of digging
     /// Writes the steps of a frame, and returns when they are on disk. `materials` are the materials that their edits
     /// set. Throws DiskFailure if the disk refuses them and the policy is required.
@@ -83,9 +79,14 @@ public:
     void force(const journal::JournalForce& force);
     /// Begins a checkpoint if one is due. Called after every frame, when all steps of `replica` are in the journal.
     void shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
-    /// Writes the end of the session. Between doubt() and checked() the journal gets no end. A checkpoint that is being
-    /// written gets kPatience to end, because the journal holds every step without it.
+    /// Writes the end of the session. Between doubt() and checked() the journal gets no end. Waits at most half a
+    /// second for a checkpoint that is being written, because the ranks wait meanwhile.
     void finish(const journal::JournalEnd& end);
+    /// Returns the checkpoint that is still being written, for UnfinishedCheckpoint::finish(). Call it after finish().
+    /// Without this call the destructor gives the checkpoint UnfinishedCheckpoint::kPatience to end.
+    [[nodiscard]] std::optional<UnfinishedCheckpoint> takeUnfinished();
+    /// Returns whether the session has a checkpoint on disk.
+    [[nodiscard]] bool hasCheckpoint() const;
 
     [[nodiscard]] JournalPolicy policy() const { return options_.policy; }
     /// Returns "written", "no_room", "failed" or "off".
@@ -111,13 +112,13 @@ private:
     void refused(const std::string& why);
     void requireNoWriter() const;
     void setAside(std::uint64_t step);
-    void takeCheckpoint();
-    void endCheckpoint();
+    void takeCheckpoint(bool wait);
 
     JournalOptions options_;
     std::filesystem::path journal_;
     std::string buildId_;
     std::uint64_t sceneDigest_;
+    double stripes_;                         // pieces in which the heights are compressed
     std::optional<JournalWriter> writer_;    // nullopt if off or failed
     bool stopped_ = false;                   // the sand is stopped because the disk is full
     double stoppedSince_ = 0, lastTry_ = 0;  // [s]
@@ -125,10 +126,8 @@ private:
     double stoppedSeconds_ = 0;
     double lastCheckpoint_ = 0;  // [s]
     std::uint64_t checkpointStep_ = 0;
-    std::future<std::string> checkpoint_;  // result of the one that is being written: its error message
-    // Whether the checkpoint that is being written is to be left out. Its thread reads it.
-    std::shared_ptr<std::atomic<bool>> leftOut_ = std::make_shared<std::atomic<bool>>(false);
-    std::string complaint_;  // error message of the last checkpoint
+    std::optional<UnfinishedCheckpoint> checkpoint_;  // the one that is being written
+    std::string complaint_;                           // error message of the last checkpoint
     std::uint64_t checkpointsFailed_ = 0, checkpointsBeyond_ = 0;
     bool ticksLeftOut_ = false;
     bool doubted_ = false;
