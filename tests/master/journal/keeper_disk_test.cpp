@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/input_error.hpp"
+#include "master/journal/checkpoint.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
 #include "tests/support/machine/small_disk.hpp"
 
@@ -127,6 +128,56 @@ TEST_F(KeeperDisk, SandThatDoesNotFitStopsNothing) {
         EXPECT_TRUE(showFrame());
         EXPECT_EQ(keeper_->stops(), 0U);
         keeper_.reset();
+    });
+}
+
+TEST_F(KeeperDisk, AFullDiskAtTheHeaderIsNamedAndTheEarlierJournalIsKept) {
+    support::testOnSmallDisk(folder_, "size=4m", [this] {
+        begin({.checkpointSeconds = 0});
+        ASSERT_TRUE(showFrame());
+        keeper_.reset();
+        support::fill(folder_ / "filler");
+        try {
+            begin({});
+            ADD_FAILURE() << "not refused";
+        } catch (const base::InputError& error) {
+            EXPECT_EQ(error.what(), journal().string() + ": the journal cannot be written (No space left on device)");
+        }
+        EXPECT_FALSE(std::filesystem::exists(journal()));
+        EXPECT_FALSE(std::filesystem::exists(journal().string() + ".part"));
+        const journal::Journal earlier = master::readJournal(journal().string() + ".previous");
+        EXPECT_EQ(earlier.frames.size(), 1U);
+        EXPECT_EQ(earlier.tornBytes, 0);
+        std::filesystem::remove(folder_ / "filler");
+        begin({});  // the next try finds room
+        EXPECT_EQ(master::readJournal(journal().string() + ".previous").frames.size(), 1U);
+        keeper_.reset();
+    });
+}
+
+TEST_F(KeeperDisk, AFullDiskAtACheckpointStopsNothingAndLeavesNoHalf) {
+    support::testOnSmallDisk(folder_, "size=4m", [this] {
+        begin({.checkpointSeconds = 1e-9});
+        ASSERT_TRUE(showFrame());
+        while (master::checkpointsOf(journal()).empty()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        support::fill(folder_ / "filler");  // the journal has reserved room for its steps
+        const std::vector<std::uint64_t> before = master::checkpointsOf(journal());
+        for (int frame = 0; keeper_->checkpointsFailed() == 0; ++frame) {
+            ASSERT_LT(frame, 1000);
+            ASSERT_TRUE(showFrame());
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        keeper_->finish({replica_.stepNumber(), replica_.stateHash()});
+        EXPECT_TRUE(keeper_->whole());
+        keeper_.reset();
+        EXPECT_EQ(master::checkpointsOf(journal()), before) << "the older one stays";
+        const auto checkpoints = master::checkpointFile(journal(), 0).parent_path();
+        for (const auto& entry : std::filesystem::directory_iterator(checkpoints)) {
+            EXPECT_EQ(entry.path().extension(), ".checkpoint") << entry.path();
+        }
+        expectWhole(replica_.stepNumber());
     });
 }
 
