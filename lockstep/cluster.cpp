@@ -18,7 +18,7 @@
 namespace lockstep {
 namespace {
 
-enum ClusterTag : int { kGatherLengthTag = 30, kGatherTag, kFarewellTag };
+enum ClusterTag : int { kGatherLengthTag = 30, kGatherTag, kFarewellTag, kStartTag };
 
 constexpr const char* kInit = "the start of MPI";
 constexpr const char* kStart = "the start";
@@ -107,6 +107,45 @@ void Cluster::mayTakeLong(bool may) const {
     watchdog_->arm();  // a new wait begins here
 }
 
+void Cluster::progress(const char* work, double share) const {
+    constexpr double kProgress = 0.01;  // a smaller part does not count
+    const bool same = ownWork_ == work;
+    if (same && share < progress_ + kProgress) {
+        return;
+    }
+    progress_ = share;
+    ownWork_ = work;
+    send(StartNote::progress);
+    mayTakeLong(false);
+}
+
+void Cluster::progressEnds() const {
+    if (ownWork_ != nullptr) {
+        ownWork_ = nullptr;
+        send(StartNote::quiet);
+        mayTakeLong(true);
+    }
+}
+
+/// Sends a note to the render ranks, which wait in awaitBroadcast(). The messages are short, so that MPI keeps them for
+/// ranks that do not receive yet.
+void Cluster::send(StartNote note) const {
+    for (int rank = 1; rank < size_; ++rank) {
+        MPI_Send(&note, 1, MPI_BYTE, rank, kStartTag, frames_);
+    }
+}
+
+void Cluster::awaitBroadcast() const {
+    if (isMaster()) {
+        ownWork_ = nullptr;
+        send(StartNote::broadcast);
+    }
+    for (auto note = StartNote::quiet; note != StartNote::broadcast && !isMaster();) {
+        MPI_Recv(&note, 1, MPI_BYTE, kMaster, kStartTag, frames_, MPI_STATUS_IGNORE);
+        mayTakeLong(note != StartNote::progress);
+    }
+}
+
 void Cluster::startUpIsOver() const { watchdog_->disarm(); }
 
 void Cluster::endBegins(double limitSeconds) const {
@@ -144,7 +183,8 @@ Wait Cluster::describeWait() const {
             wait.names += index < names_.size() ? names_[index] : fmt::format("rank {}", rank);
         }
     }
-    wait.names = wait.names.empty() ? "the other ranks" : wait.names;
+    const char* const own = ownWork_;
+    wait.names = !wait.names.empty() ? wait.names : own != nullptr ? own : "the other ranks";
     wait.text = fmt::format("{} of rank {} waits for {}", phase_.load(), wait.by, wait.names);
     if (rank_ == kMaster) {
         wait.text = fmt::format("{} waits for {}", phase_.load(), wait.names);

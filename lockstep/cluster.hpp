@@ -71,6 +71,18 @@ public:
     /// Sets whether the start may take an hour, because the ranks wait while the master replays a journal.
     void mayTakeLong(bool may) const;
 
+    /// Called by the master before the broadcast of the session, during a part of its start that knows its progress.
+    /// `share` is the part of the work that is done, 0 to 1, never a time. After each hundredth
+    /// the wait of all ranks begins again, with the usual limit of the start instead of an hour. `work` names the work
+    /// in messages: "the reading of its scene". It must be a literal. The ranks must wait in awaitBroadcast().
+    void progress(const char* work, double share) const;
+    /// Called by the master when the work of progress() has ended. The ranks then wait up to an hour again, because the
+    /// rest of the start cannot tell its progress.
+    void progressEnds() const;
+    /// Waits at the render ranks until the master has called it, and takes the master's progress meanwhile. Collective,
+    /// before the first broadcast().
+    void awaitBroadcast() const;
+
     /// Stops the watchdog of the start. FrameBarrier calls this, because it has a watchdog of its own.
     void startUpIsOver() const;
     /// Starts the watchdog of the end, with a limit of `limitSeconds` [s]. FrameBarrier calls this when it ends.
@@ -83,6 +95,13 @@ public:
     [[noreturn]] void abort(int status) const;
 
 private:
+    /// Message of the master to the render ranks while it prepares the session.
+    enum class StartNote : std::uint8_t {
+        progress,  // the usual limit of the start counts from now
+        quiet,     // the master may be silent for an hour
+        broadcast  // the session comes
+    };
+    void send(StartNote note) const;
     void await(std::span<MPI_Request> requests, std::span<const int> ranks) const;
     void farewell() const;
     [[nodiscard]] Wait describeWait() const;
@@ -90,10 +109,12 @@ private:
 
     std::atomic<int> rank_{0};  // also read by the watchdog's thread
     int size_ = 1;
-    std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank, also read by the watchdog's thread
-    std::atomic<int> missingSize_{0};               // number of entries of missing_
-    mutable std::atomic<const char*> phase_;        // named by the watchdog
-    mutable std::mutex mutex_;                      // of the two members below
+    std::unique_ptr<std::atomic<bool>[]> missing_;       // by rank, also read by the watchdog's thread
+    std::atomic<int> missingSize_{0};                    // number of entries of missing_
+    mutable std::atomic<const char*> phase_;             // named by the watchdog
+    mutable std::atomic<const char*> ownWork_{nullptr};  // of the master, for which all ranks wait; null for none
+    mutable double progress_ = 0;                        // of ownWork_, 0 to 1
+    mutable std::mutex mutex_;                           // of the two members below
     mutable std::vector<std::string> names_;
     mutable LastWords lastWords_;
     std::unique_ptr<Watchdog> watchdog_;

@@ -8,6 +8,7 @@ namespace lockstep {
 std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
                                                const std::optional<SessionMessage>& fromMaster) {
     cluster.mayTakeLong(true);
+    cluster.awaitBroadcast();
     const base::Bytes bytes = cluster.broadcast(fromMaster ? base::encoded(*fromMaster) : base::Bytes{});
     cluster.mayTakeLong(false);
     if (bytes.empty()) {

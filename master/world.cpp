@@ -30,6 +30,8 @@
 namespace master {
 namespace {
 
+constexpr double kAllRead = 0.99;  // part of a raster's heights after which the rest is short
+
 /// Finds the place where the session in --out stopped, if there is one, and returns its scene.
 std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, ProgramOptions& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
@@ -71,7 +73,16 @@ scene::Scene readScene(const lockstep::Cluster& cluster, const std::string& file
     scene::Scene scene = scene::loadScene(
         file, {.raster = [&](int columns, int rows) { requireMemoryOfRaster(hosts, columns, rows, file); },
                .field = [&](const sand::FieldSize& size) { requireMemory(hosts, size, file); },
-               .progress = [&](double share) { progress.done(share); }});
+               .progress =
+                   [&](double share) {
+                       progress.done(share);
+                       if (share < kAllRead) {
+                           cluster.progress("the reading of its scene", share);
+                       } else {
+                           cluster.progressEnds();  // a mesh that is made of the raster cannot tell its progress
+                       }
+                   }});
+    cluster.progressEnds();
     for (const scene::RasterStatement& statement : *scene.statements) {
         host::printLine("{}: {}", statement.file, statement.text());
     }
