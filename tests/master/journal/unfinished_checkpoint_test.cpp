@@ -2,9 +2,13 @@
 #include "master/journal/unfinished_checkpoint.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <future>
 #include <memory>
 #include <stdexcept>
@@ -37,9 +41,11 @@ void writeForEver(UnfinishedCheckpoint::Work& work) {
 
 TEST(UnfinishedCheckpoint, IsFinishedHoweverLongItTakesIfThereIsNoOlderOne) {
     std::promise<void> gate;
-    UnfinishedCheckpoint checkpoint(7, [open = gate.get_future().share()](UnfinishedCheckpoint::Work& work) {
-        open.wait();
+    std::atomic<bool> written = false;
+    UnfinishedCheckpoint checkpoint(7, [&](UnfinishedCheckpoint::Work& work) {
+        gate.get_future().wait();
         work.requireWanted();
+        written = true;
     });
     EXPECT_FALSE(checkpoint.endsWithin(0s));
     const Clock clock;
@@ -52,7 +58,7 @@ TEST(UnfinishedCheckpoint, IsFinishedHoweverLongItTakesIfThereIsNoOlderOne) {
         return false;
     };
     EXPECT_TRUE(checkpoint.finish(false, openLater, clock));
-    EXPECT_TRUE(opened);
+    EXPECT_TRUE(written);
 }
 
 TEST(UnfinishedCheckpoint, IsLeftOutAfterSomeSecondsIfThereIsAnOlderOne) {
@@ -71,6 +77,24 @@ TEST(UnfinishedCheckpoint, IsAbandonedWithoutAWaitForItsThread) {
         false, [] { return true; }, Clock()))
         << "the thread still waits";
     gate.set_value();
+}
+
+/// Gets a signal of the end while a checkpoint is written, as a master does at the second Ctrl-C.
+[[noreturn]] void finishAfter(int signal) {
+    std::promise<void> never;
+    UnfinishedCheckpoint checkpoint(7, [&never](UnfinishedCheckpoint::Work&) { never.get_future().wait(); });
+    std::thread([signal] {
+        std::this_thread::sleep_for(300ms);
+        kill(getpid(), signal);
+    }).detach();
+    std::_Exit(master::finishUnlessSignalled(checkpoint, false) ? 1 : 7);
+}
+
+TEST(UnfinishedCheckpoint, IsAbandonedAfterASignal) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto abandoned = "the checkpoint of step 7 is abandoned; the journal has every step";
+    EXPECT_EXIT(finishAfter(SIGTERM), testing::ExitedWithCode(7), abandoned);
+    EXPECT_EXIT(finishAfter(SIGINT), testing::ExitedWithCode(7), abandoned);
 }
 
 TEST(UnfinishedCheckpoint, ThatGetsNoFurtherEnds) {

@@ -4,6 +4,7 @@
 
 import json
 import pathlib
+import signal
 import sys
 import tempfile
 import unittest
@@ -130,6 +131,22 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
         self.assertEqual(self.ended(["-"], "--device", "script:gis"), (2, "", "sandwall: scene.toml:3: no\n"))
         self.assertFalse((self.folder / "commands").exists())
 
+    def test_one_that_is_killed_before_it_listens_is_named(self):
+        self.loads("kill -KILL $$")
+        self.tries("exit 0")
+        self.assertEqual(self.ended(["-"], "--device", "script:gis"),
+                         (1, "", "sandwall: the haptic server was killed by signal 9 before it had read the scene\n"))
+
+    def test_one_ctrl_c_ends_a_start_before_the_server_listens(self):
+        self.loads("touch $folder/began; exec sleep 15")
+        self.tries("exit 0")
+        process = self.begin(["-"], "--device", "script:gis")
+        self.wait_for("server", (self.folder / "began").exists)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.communicate(timeout=60), ("", "sandwall: stopped before the first frame\n"))
+        self.assertEqual(process.returncode, 0)
+        self.assertFalse((self.folder / "commands").exists(), "no job was started")
+
     def test_a_scene_that_both_refuse_is_the_masters_line_alone(self):
         self.loads('listens; sleep 1.5; write "$error" "scene.toml:3: no"; exit 2')
         self.tries("sleep 2; complain 0 'scene.toml:3: no'; exit 2")
@@ -232,6 +249,17 @@ class HungServer(unittest.TestCase):
         self.event("link", state="loading", epoch=2, server="x", share=0.2)
         self.assertFalse(self.wall_goes_on(10))
         self.assertTrue(self.wall_goes_on(1), "it gets no further")
+
+    def test_one_whose_progress_goes_back_gets_no_further(self):
+        self.wall_goes_on(5, "hand linked")
+        self.event("link", state="loading", epoch=2, server="x", share=0.5)
+        self.event("link", state="lost", epoch=2, server="x")
+        self.assertFalse(self.wall_goes_on(5))
+        for share in (0.1, 0.4, 0.5, -1, 2, "all", None):
+            self.event("link", state="loading", epoch=2, server="x", share=share)
+            self.event("link", state="lost", epoch=2, server="x")
+        self.assertFalse(self.wall_goes_on(5))
+        self.assertTrue(self.wall_goes_on(1))
 
     def test_while_the_wall_stands_nobody_is_hung(self):
         self.wall_goes_on(5, "hand linked")
