@@ -3,7 +3,7 @@
 """Ends a process of a session in each phase of the start, and tests that the session then ends, or continues without the server.
 
 Makes a raster and measures an undisturbed start. Then each row of CASES sends each of its signals to its process, at each of
-MOMENTS. The session must end with a line from a process that is left, and with nothing left behind: no process, no temporary
+MOMENTS. The session must end with a line from a process that is left. It must leave nothing behind: no process, no temporary
 folder, no shared memory. Prints a line for each try, with the time from the signal to the last end. The exit status is 0 if all
 of this holds and no end took longer than --limit, else 1. docs/recovery.md
 """
@@ -111,7 +111,7 @@ class Start:
         return "\n".join(line for line in self.log.read_text(errors="replace").splitlines() if line.strip() and "@sandwall " not in line)
 
     def require_nothing_left(self):
-        # Memory of another session may go between the two looks of left(). What is really left is still there later.
+        # Memory of another session may go between the two looks of left(). A file that was really left is still there later.
         deadline = time.monotonic() + 5
         while left := self.left():
             if time.monotonic() > deadline:
@@ -140,7 +140,9 @@ def undisturbed(args, folder, scene):
     """Returns the time to the first frame of a session [s], and stops the session."""
     start = Start(args, folder, scene, 0)
     try:
-        start.wait(start.frame, "no frame")
+        start.wait(lambda: start.frame() or start.launcher.poll() is not None, "no frame")
+        if not start.frame():
+            raise Violation(f"an undisturbed start has failed: {start.said()}")
         whole = time.monotonic() - start.began
         start.launcher.send_signal(signal.SIGINT)
         start.wait(lambda: not start.running(), "no end")
@@ -170,7 +172,7 @@ def one(args, folder, scene, whole, case):
         seconds = time.monotonic() - signalled
         start.require_nothing_left()
         line = start.said().removeprefix(before).strip().rpartition("\n")[2]
-        killed = (name, number) == ("launcher", "KILL")  # its job ends silently, because nobody reads
+        killed = (name, number) == ("launcher", "KILL")  # its job may end without a line
         if not line and not killed:
             raise Violation("no line says what has happened")
         return seconds, start.launcher.returncode, line
@@ -193,7 +195,11 @@ def main():
         folder = pathlib.Path(name)
         scene = make_scene(folder, args.side, rough=False)
         (folder / "first").mkdir()
-        whole = undisturbed(args, folder / "first", scene)
+        try:
+            whole = undisturbed(args, folder / "first", scene)
+        except Violation as why:
+            print(f"kill_starts.py: {why}", file=sys.stderr)
+            return 1
         print(f"an undisturbed start takes {whole:.1f} s", flush=True)
         tries = [(process, number, restarts, ends, moment) for process, numbers, restarts, ends in CASES for number in numbers
                  for moment in MOMENTS if process in args.processes and number in args.signals and str(moment) in args.moments]

@@ -2,6 +2,7 @@
 """Asks the hosts of a session, before it starts, whether they can run ranks, and for the identity of each machine."""
 
 import math
+import os
 import shlex
 import socket
 import subprocess
@@ -10,7 +11,7 @@ import time
 from base import marked_answer
 from base.bad_input import BadInput
 from job import open_mpi
-from job.processes import kill_group
+from job.processes import die_with, kill_group
 from job.rank_hosts import HERE
 
 LOOK_SECONDS = 0.1
@@ -73,7 +74,7 @@ def ask(hosts, node, version=None, stopped=lambda: False, say_silent=lambda host
         for host in others:
             asked.append(subprocess.Popen([*agent, host, command], stdin=subprocess.DEVNULL,
                                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace",
-                                          start_new_session=True))
+                                          start_new_session=True, preexec_fn=die_with(os.getpid())))
         for host, process in zip(others, asked):
             complaint, answers = complaint_of(process, node, agent, goes_on)
             if complaint:

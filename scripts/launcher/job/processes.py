@@ -290,7 +290,7 @@ class Guard:
             os.close(life)
 
     def end_in_order(self):
-        """Lets the job end in order if the launcher ends, because it has shown a frame. Without a log, nobody knows that it has not."""
+        """Lets the job end in order if the launcher ends, because it has shown a frame, or because no log tells whether it has."""
         if not self.in_order:
             self.in_order = True
             os.write(self.life, b"\n")

@@ -12,6 +12,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 from supervisor_fixture import Supervised
+from job import mpirun_end
 
 
 class Output(Supervised):
@@ -152,6 +153,15 @@ class Stopping(Supervised):
 
     def test_a_deaf_job_of_a_launcher_that_is_killed_before_the_first_frame_is_killed(self):
         self.killed_at_its_start("trap '' TERM HUP INT; sleep 3600 & setsid sleep 3600; sleep 3600")
+
+    def test_a_launcher_that_is_killed_while_it_asks_hosts_leaves_no_question(self):
+        self.script("agent", f"#!/bin/sh\necho $$ > {self.folder}/asks.new; mv {self.folder}/asks.new {self.folder}/asks; exec sleep 3600\n")
+        process = self.begin(["node1"])
+        self.wait_for("question", (self.folder / "asks").exists)
+        process.kill()
+        process.wait(60)
+        asks = int((self.folder / "asks").read_text())
+        self.wait_for("end", lambda: not ((found := mpirun_end.process(asks)) and found.runs()))
 
     def test_one_ctrl_c_ends_the_start_of_a_job_without_a_log_by_the_end_of_its_input(self):
         self.tries("touch $folder/began; while read -r line; do :; done; exit 76")
