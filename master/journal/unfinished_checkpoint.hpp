@@ -16,7 +16,7 @@ namespace master {
 /// A checkpoint that a thread writes. One thread uses the object. The destructor waits for the thread.
 class UnfinishedCheckpoint {
 public:
-    /// What the thread uses. Both functions may be called by any thread.
+    /// Link between the object and its thread. Both functions may be called by any thread.
     class Work {
     public:
         /// Throws std::runtime_error if the checkpoint is to be left out.

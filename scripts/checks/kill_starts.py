@@ -22,7 +22,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / room) for room
 from base import events, layout
 from base.command_line import Parser, above, at_least
 from base.process_marks import marked
-from job import processes
+from job import open_mpi, processes
 from sessions.start_cost import make_scene
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -42,17 +42,6 @@ class Violation(Exception):
     """A result that the test forbids."""
 
 
-def mapped():
-    """Returns the lines of all mappings of all processes of this user."""
-    found = []
-    for process in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            found.append((process / "maps").read_text(errors="replace"))
-        except OSError:
-            pass  # it has ended, or belongs to another user
-    return "\n".join(found)
-
-
 class Start:
     """A session that starts. All its processes have a mark in their environment."""
 
@@ -61,7 +50,7 @@ class Start:
         self.out, self.log = folder / "out", folder / "log"
         self.temporary = folder / "temporary"
         self.temporary.mkdir()
-        self.shared = set(os.listdir("/dev/shm"))
+        self.jobs = set()  # ids of MPI jobs, in the names of Open MPI's shared memory
         name, _, value = self.mark.partition("=")
         command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", args.wall, "--scene", scene, "--device", "script:gis",
                    "--no-pictures", "--gl", layout.in_memory(), "--restarts", restarts, "--out", self.out]
@@ -110,20 +99,14 @@ class Start:
         """Returns what the session has printed for a person."""
         return "\n".join(line for line in self.log.read_text(errors="replace").splitlines() if line.strip() and "@sandwall " not in line)
 
-    def require_nothing_left(self):
-        # Memory of another session may go between the two looks of left(). A file that was really left is still there later.
-        deadline = time.monotonic() + 5
-        while left := self.left():
-            if time.monotonic() > deadline:
-                raise Violation(f"left behind: {', '.join(left[:8])}")
-            time.sleep(0.1)
+    def note_jobs(self):
+        self.jobs |= {job for pid in self.running() if (job := open_mpi.job_id_of(pid))}
 
-    def left(self):
-        """Returns the names of files that the session has left behind."""
+    def require_nothing_left(self):
         left = [str(path.relative_to(self.temporary)) for path in self.temporary.rglob("*")]
-        maps = mapped()  # other sessions on this machine have memory of their own
-        left += [f"/dev/shm/{name}" for name in sorted(set(os.listdir("/dev/shm")) - self.shared) if f"/dev/shm/{name}" not in maps]
-        return left
+        left += [f"/dev/shm/{name}" for name in sorted(os.listdir("/dev/shm")) if any(f".{job}." in name for job in self.jobs)]
+        if left:
+            raise Violation(f"left behind: {', '.join(left[:8])}")
 
     def end(self):
         """Kills what is left, the launcher first."""
@@ -161,6 +144,7 @@ def one(args, folder, scene, whole, case):
         if victim is None or start.frame():
             return None
         before = start.said()
+        start.note_jobs()
         os.kill(victim, getattr(signal, f"SIG{number}"))
         signalled = time.monotonic()
         if not ends:

@@ -43,18 +43,20 @@ def end(mpirun, mark, outputs, in_order=True):
     watch = EndWatch(mpirun)
     asked = time.monotonic() + (processes.ORDERLY_END_SECONDS if in_order else 0)
     killed = asked + (processes.KILL_SECONDS if in_order else processes.GUARD_SECONDS)
-    terminated = False
+    terminated, job_id = False, None
     while has_mark(mpirun, mark):
         discard(outputs)
         now = time.monotonic()
-        if now > killed or watch.stuck(now):
+        stuck = watch.stuck(now)
+        job_id = job_id or (watch.child and open_mpi.job_id_of(watch.child))
+        if now > killed or stuck:
             signal_job(mpirun, signal.SIGKILL)
         elif now >= asked and not terminated:  # once, because mpirun gives up its orderly end after a second signal
             terminated = True
             signal_job(mpirun, signal.SIGTERM)
         time.sleep(processes.LOOK_SECONDS)
     processes.clear(mark, lambda: discard(outputs), None if in_order else 0)
-    open_mpi.tidy_after(mpirun)
+    open_mpi.tidy_after(mpirun, job_id)
 
 
 def main():

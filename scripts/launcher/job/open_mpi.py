@@ -9,6 +9,7 @@ import dataclasses
 import glob
 import itertools
 import os
+import pathlib
 import re
 import shlex
 import shutil
@@ -35,6 +36,8 @@ SCHEDULERS = ("SLURM_JOB_ID", "SLURM_JOBID", "PBS_JOBID", "LSB_JOBID", "PE_HOSTF
 # Variables of a process that mpirun has started. mpirun refuses to start another mpirun there.
 IN_A_JOB = ("OMPI_UNIVERSE_SIZE", "OMPI_COMM_WORLD_RANK")
 RANK = "PMIX_RANK"  # Open MPI 5 sets it for every process before the process begins
+JOB_ID = b"OMPI_MCA_ess_base_jobid="  # begins an entry in the environment of a rank of Open MPI 4.1
+SHARED_MEMORY = "/dev/shm"
 RELAY = "SANDWALL_RELAY"  # descriptor to which a rank writes what must reach the launcher; with _LOST, what its file does not take (host/rank_output.hpp)
 RANK_LOG = "SANDWALL_RANK_LOG"  # the file of a rank's output, for a rank that the launcher cannot read
 
@@ -208,10 +211,29 @@ def is_own_folder(path):
     return stat.S_ISDIR(about.st_mode) and about.st_uid == os.geteuid()
 
 
-def tidy_after(pid):
-    """Removes what an mpirun of any version with this process id has left behind."""
+def tidy_after(pid, job_id=None):
+    """Removes what an mpirun of any version with this process id has left behind, and the memory of its job `job_id`."""
     for kind in (OpenMpi4, OpenMpi5):
         kind("").tidy(pid)
+    forget_memory(job_id)
+
+
+def job_id_of(rank):
+    """Returns the id of the job of the process `rank`, as in the names of its shared memory. Returns None for other processes."""
+    try:
+        entries = pathlib.Path("/proc", str(rank), "environ").read_bytes().split(b"\0")
+    except OSError:
+        return None  # it has ended
+    return next((f"{int(entry[len(JOB_ID):]):x}" for entry in entries if entry.startswith(JOB_ID) and entry[len(JOB_ID):].isdigit()), None)
+
+
+def forget_memory(job_id):
+    """Removes the shared memory of an ended job on this machine. An mpirun that was killed leaves it. `job_id` may be None."""
+    for path in glob.glob(f"{SHARED_MEMORY}/vader_segment.*.{os.geteuid()}.{job_id}.*") if job_id else ():
+        with contextlib.suppress(OSError):
+            about = os.lstat(path)
+            if stat.S_ISREG(about.st_mode) and about.st_uid == os.geteuid():
+                os.unlink(path)
 
 
 # Open MPI sends a variable of this machine's environment to the other hosts only with -x.

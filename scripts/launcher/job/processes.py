@@ -14,6 +14,7 @@ from base import events
 from base.bad_input import BadInput
 from base.console import print_line
 from base.process_marks import marked
+from job import open_mpi
 from job.job_stream import LIBC
 from job.mpirun_end import EndWatch
 
@@ -191,6 +192,7 @@ class Job:
         self.close_at = None  # time at which the input is closed [s]; only a job that starts ends then
         self.ended_at_start = False  # whether the master has ended because its input was closed
         self.end_watch = EndWatch(self.process.pid)
+        self.job_id = None  # of Open MPI, as soon as a rank on this machine tells it
 
     def ask(self, command):
         """Sends a line to the master: a command as of `sandwall ctl`."""
@@ -245,6 +247,8 @@ class Job:
             self.stuck = True
             print_line("mpirun does not end after its last process; killing it")
             self.signal(signal.SIGKILL)
+        if self.job_id is None and self.end_watch.child:
+            self.job_id = open_mpi.job_id_of(self.end_watch.child)
         if stop.count > 0 and not self.asked:
             print_line("stopping; finishing journal and pictures; press Ctrl-C again to kill")
             events.emit("stopping")

@@ -15,7 +15,7 @@ from base.command_line import NOT_YET
 from base.console import print_line
 from base.temporary_folder import TemporaryFolder
 from hosts import machine_needs
-from job import job_log
+from job import job_log, open_mpi
 from job.processes import HapticServer, Input, Job, exit_status
 from watch import failed_processes
 from watch.patience import Patience, Stopped
@@ -222,6 +222,7 @@ class Supervisor:
             self.input.job = None
             self.job.clear()
         self.mpi.tidy(self.job.process.pid)
+        open_mpi.forget_memory(self.job.job_id)
         return status
 
     def look_after_server(self, log):

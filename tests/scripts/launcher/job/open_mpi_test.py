@@ -295,6 +295,26 @@ class Launcher(LauncherTest):
             self.assertTrue((other / "pid.12").exists(), "another machine's")
             self.assertTrue((elsewhere / "pid.12").exists(), "no link is followed")
 
+    def test_the_memory_of_a_job_is_removed_and_no_other_file(self):
+        uid = os.geteuid()
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(open_mpi, "SHARED_MEMORY", folder):
+            names = [f"vader_segment.host.{uid}.2fcc0001.{rank}" for rank in (0, 1)]
+            others = [f"vader_segment.host.{uid}.12fcc0001.0", f"vader_segment.host.{uid + 1}.2fcc0001.0", "other.2fcc0001.0"]
+            for name in names + others:
+                pathlib.Path(folder, name).write_text("")
+            os.symlink("/etc/hostname", pathlib.Path(folder, f"vader_segment.link.{uid}.2fcc0001.0"))
+            open_mpi.forget_memory(None)
+            self.assertEqual(len(os.listdir(folder)), 6)
+            open_mpi.forget_memory("2fcc0001")
+            self.assertEqual(sorted(os.listdir(folder)), sorted([*others, f"vader_segment.link.{uid}.2fcc0001.0"]))
+
+    def test_a_rank_tells_the_id_of_its_job(self):
+        for text, job_id in (("801898497", "2fcc0001"), ("word", None), ("", None)):
+            with subprocess.Popen(["sleep", "1000"], env={**os.environ, "OMPI_MCA_ess_base_jobid": text}) as rank:
+                self.assertEqual(open_mpi.job_id_of(rank.pid), job_id)
+                rank.kill()
+        self.assertIsNone(open_mpi.job_id_of(rank.pid))
+
 
 if __name__ == "__main__":
     unittest.main()
