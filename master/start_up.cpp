@@ -13,7 +13,6 @@
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
 #include "master/journal/journal.hpp"
-#include "scene/import/raster_memory.hpp"
 
 namespace master {
 
@@ -32,12 +31,12 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Sc
     }
 }
 
-void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, int columns, int rows,
+void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, const scene::RasterSize& size,
                            const std::string& file) {
     const std::vector<lockstep::RankHost> master(ranks.begin(), ranks.begin() + (ranks.empty() ? 0 : 1));
-    if (const auto lack = lockstep::lackOfMemory(master, scene::bytesToRead(columns, rows))) {
+    if (const auto lack = lockstep::lackOfMemory(master, size.bytes())) {
         throw base::InputError(
-            fmt::format("{}: {} x {} pixels of a raster need {}; coarsen it", file, columns, rows, *lack));
+            fmt::format("{}: {} x {} pixels of a raster need {}; coarsen it", file, size.columns, size.rows, *lack));
     }
 }
 

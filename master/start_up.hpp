@@ -7,6 +7,7 @@
 
 #include "lockstep/cluster.hpp"
 #include "lockstep/session_message.hpp"
+#include "scene/import/raster_check.hpp"
 #include "scene/model/scene.hpp"
 #include "walls/wall.hpp"
 
@@ -19,7 +20,7 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Sc
 /// Checks the memory for a field before its heights are made.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::FieldSize& size, const std::string& file);
 /// Checks the memory for the pixels of a raster file before they are read. Only the master holds them.
-void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, int columns, int rows,
+void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, const scene::RasterSize& size,
                            const std::string& file);
 /// Checks the memory for the sand of a journal before it is made. Also throws base::InputError if the journal cannot be
 /// read.

@@ -71,7 +71,7 @@ scene::Scene readScene(const lockstep::Cluster& cluster, const std::string& file
     host::PhaseProgress progress("read", "reads the scene",
                                  [](const std::string& line) { host::printLine("{}", line); });
     scene::Scene scene = scene::loadScene(
-        file, {.raster = [&](int columns, int rows) { requireMemoryOfRaster(hosts, columns, rows, file); },
+        file, {.raster = [&](const scene::RasterSize& size) { requireMemoryOfRaster(hosts, size, file); },
                .field = [&](const sand::FieldSize& size) { requireMemory(hosts, size, file); },
                .progress =
                    [&](double share) {

@@ -32,11 +32,12 @@ EsriGrid rasterOf(const Scene& scene, double datum, HeightOf heightOf) {
     grid.southEdge = reference.south;
     grid.units = reference.units;
     const double finest = field.unit() * reference.heightPerUnit;
+    grid.heights.reserve(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
     for (int row = grid.rows - 1; row >= 0; --row) {
         for (int column = 0; column < grid.columns; ++column) {
             const double height = (heightOf(column, row) * field.unit() + datum) * reference.heightPerUnit;
-            grid.heights.push_back(isWall(scene, column, row) ? std::numeric_limits<double>::quiet_NaN()
-                                                              : withFewDecimals(height, finest));
+            grid.heights.add(isWall(scene, column, row) ? std::numeric_limits<double>::quiet_NaN()
+                                                        : withFewDecimals(height, finest));
         }
     }
     return grid;

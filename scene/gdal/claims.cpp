@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gdal/claims.hpp"
 
-#include <cpl_string.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,20 +22,6 @@ namespace scene {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct FreeList {
-    void operator()(char** list) const { CSLDestroy(list); }
-};
-
-/// Returns the files of a raster, the one that was opened first.
-std::vector<fs::path> filesOf(const GdalRaster& raster) {
-    const std::unique_ptr<char*, FreeList> list(GDALGetFileList(raster.dataset()));
-    std::vector<fs::path> files;
-    for (char** name = list.get(); name != nullptr && *name != nullptr; ++name) {
-        files.emplace_back(*name);
-    }
-    return files;
-}
 
 /// Returns the value behind `key` in a header whose lines are "key value" or "key = value", in small letters.
 std::optional<std::string> valueIn(const fs::path& header, std::string_view key) {
@@ -208,7 +193,7 @@ std::optional<std::string> lengthUnitInHeader(const GdalRaster& raster) {
     if (!idrisi && raster.driver() != "ENVI") {
         return std::nullopt;
     }
-    const std::optional<fs::path> header = fileWithEnding(filesOf(raster), idrisi ? ".rdc" : ".hdr");
+    const std::optional<fs::path> header = fileWithEnding(raster.files(), idrisi ? ".rdc" : ".hdr");
     if (!header) {
         return std::nullopt;
     }
@@ -257,7 +242,7 @@ std::string missingHeader(const fs::path& file) {
 }
 
 void checkClaims(const GdalRaster& raster) {
-    const std::vector<fs::path> files = filesOf(raster);
+    const std::vector<fs::path> files = raster.files();
     checkSizes(raster, files);
     for (const fs::path& file : files) {
         if (file != files.front() && isHeaderOfNumbers(file, raster.driver())) {

@@ -55,11 +55,7 @@ void setPlace(const GdalRaster& raster, EsriGrid& grid) {
             grid.file, std::filesystem::path(grid.file).filename().string()));
     }
     if (depth > 0) {  // the first row is the southernmost
-        for (int row = 0; row < grid.rows / 2; ++row) {
-            const auto columns = static_cast<std::ptrdiff_t>(grid.columns);
-            const auto upper = grid.heights.begin() + row * columns;
-            std::swap_ranges(upper, upper + columns, grid.heights.end() - (row + 1) * columns);
-        }
+        grid.heights.turnOver(grid.columns);
     }
 }
 
@@ -90,7 +86,7 @@ double whiteOf(const GdalRaster& raster) {
 }
 
 void ask(const RasterCheck& check, const GdalRaster& raster) {
-    check(raster.columns(), raster.rows(), raster.complete());
+    check({raster.columns(), raster.rows(), raster.numberSize(), raster.complete()});
 }
 
 class GdalImporter final : public Importer {
@@ -129,13 +125,13 @@ public:
         ask(check, raster);
         grid.cellSize = 1;
         grid.heights = raster.pixels(check);
-        for (double& height : grid.heights) {
-            height /= white;
-        }
+        grid.heights.divide(white);
         grid.warnings = raster.warnings();
         return grid;
     }
-    [[nodiscard]] EsriGrid evaluate(const Function& function) const override { return evaluateFunction(function); }
+    [[nodiscard]] EsriGrid evaluate(const Function& function, const RasterCheck& check) const override {
+        return evaluateFunction(function, check);
+    }
     [[nodiscard]] base::Bytes geoTiff(const EsriGrid& grid, const std::string& file) const override {
         return geoTiffOf(grid, file);
     }
@@ -163,7 +159,7 @@ public:
 }  // namespace
 }  // namespace scene
 
-extern "C" const scene::Importer* sandwallImport6() {
+extern "C" const scene::Importer* sandwallImport7() {
     static const scene::GdalImporter kImporter;
     return &kImporter;
 }

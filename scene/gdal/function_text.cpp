@@ -45,7 +45,7 @@ void refuseAssignments(const std::string& text) {
 
 }  // namespace
 
-EsriGrid evaluateFunction(const Function& function) {
+EsriGrid evaluateFunction(const Function& function, const RasterCheck& check) {
     refuseAssignments(function.text);
     EsriGrid grid;
     grid.columns = function.columns;
@@ -75,8 +75,9 @@ EsriGrid evaluateFunction(const Function& function) {
                     fail(function.text, fmt::format("z is {} at x = {:.6g}, y = {:.6g}",
                                                     std::isnan(z) ? "not a number" : "infinite", x, y));
                 }
-                grid.heights.push_back(z);
+                grid.heights.add(z);
             }
+            check.read((row + 1.0) / grid.rows);
         }
     } catch (const mu::ParserError& error) {
         failAt(function.text, error.GetPos(), error.GetMsg());

@@ -60,9 +60,9 @@ bool fill(GDALRasterBandH band, const EsriGrid& grid) {
     const double heightsPerLength = writesLengths(grid.units) ? 1 : grid.units.heightsPerLength;
     std::vector<double> row(static_cast<std::size_t>(grid.columns));
     for (int fromNorth = 0; fromNorth < grid.rows; ++fromNorth) {
-        const double* heights = grid.heights.data() + grid.index(0, grid.rows - 1 - fromNorth);
+        const std::size_t first = grid.index(0, grid.rows - 1 - fromNorth);
         for (std::size_t column = 0; column < row.size(); ++column) {
-            row[column] = heights[column] * heightsPerLength;
+            row[column] = grid.heights[first + column] * heightsPerLength;
         }
         if (GDALRasterIO(band, GF_Write, 0, fromNorth, grid.columns, 1, row.data(), grid.columns, 1, GDT_Float64, 0,
                          0) != CE_None) {

@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string_view>
 
 #include "base/input_error.hpp"
 #include "scene/gdal/claims.hpp"
-#include "scene/gdal/png_greys.hpp"
+#include "scene/gdal/gdal_pixels.hpp"
 #include "scene/import/importer.hpp"
 
 namespace scene {
@@ -71,7 +70,7 @@ GdalRaster::GdalRaster(const fs::path& file, const fs::path& inMemory)
     }
     chooseBand();
     checkClaims(*this);
-    const double bytes = kRasterBytesPerPixel * columns() * rows();
+    const auto bytes = static_cast<double>(RasterSize{columns(), rows(), numberSize()}.bytes());
     if (bytes > kMostRasterBytes) {
         fail(
             fmt::format("{} x {} pixels would take {:.1f} GB, and {:.1f} GB is the most; coarsen it: gdal_translate "
@@ -157,8 +156,19 @@ bool GdalRaster::isSignedByte() const {
     return GDALGetRasterDataType(band_) == GDT_Byte && type != nullptr && std::string_view(type) == "SIGNEDBYTE";
 }
 
-double GdalRaster::heightOf(double number) const {
-    return scale_ == 1 && offset_ == 0 ? number : number * scale_ + offset_;
+NumberSize GdalRaster::numberSize() const {
+    const GDALDataType type = GDALGetRasterDataType(band_);
+    const bool shortInteger = GDALDataTypeIsInteger(type) != 0 && GDALGetDataTypeSizeBits(type) <= 16;
+    return type == GDT_Float32 || shortInteger ? NumberSize::floats : NumberSize::doubles;
+}
+
+std::vector<fs::path> GdalRaster::files() const {
+    const GdalList list(GDALGetFileList(dataset_.get()));
+    std::vector<fs::path> files;
+    for (char** name = list.get(); name != nullptr && *name != nullptr; ++name) {
+        files.emplace_back(*name);
+    }
+    return files;
 }
 
 std::optional<double> GdalRaster::noData() const {
@@ -172,73 +182,12 @@ bool GdalRaster::complete() const {
     return whole && !isSignedByte() && (GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0;
 }
 
-std::vector<double> GdalRaster::numbers(const RasterCheck& check) const {
-    if (isPng()) {
-        return greysOfPng(name_, columns(), rows());
+RasterHeights GdalRaster::pixels(const RasterCheck& check) const {
+    RasterHeights heights = numbersOf(*this, check);
+    if (isScaled()) {
+        heights.multiply(scale_, offset_);
     }
-    std::vector<double> numbers(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()));
-    GDALRasterIOExtraArg more;
-    INIT_RASTERIO_EXTRA_ARG(more);
-    more.pfnProgress = [](double share, const char* /*message*/, void* to) {
-        static_cast<const RasterCheck*>(to)->read(share);
-        return TRUE;
-    };
-    more.pProgressData = const_cast<RasterCheck*>(&check);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    if (GDALRasterIOEx(band_, GF_Read, 0, 0, columns(), rows(), numbers.data(), columns(), rows(), GDT_Float64, 0, 0,
-                       &more) != CE_None) {
-        failToRead();
-    }
-    if (isSignedByte()) {
-        for (double& number : numbers) {
-            number -= number > 127 ? 256 : 0;
-        }
-    }
-    return numbers;
-}
-
-std::vector<double> GdalRaster::pixels(const RasterCheck& check) const {
-    std::vector<double> pixels = numbers(check);
-    mask(pixels);
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        pixels[i] = heightOf(pixels[i]);
-        if (std::isinf(pixels[i])) {
-            const auto width = static_cast<std::size_t>(columns());
-            fail(
-                fmt::format("the height of pixel {}, {} (from the north-west) is infinite; mask it: gdal_translate "
-                            "-a_nodata {}",
-                            i % width + 1, i / width + 1, pixels[i]));
-        }
-    }
-    return pixels;
-}
-
-void GdalRaster::mask(std::vector<double>& pixels) const {
-    const int flags = GDALGetMaskFlags(band_);
-    if (isSignedByte() || (isPng() && (flags & GMF_NODATA) != 0)) {
-        // GDAL's mask would compare the number without its sign, or a transparent grey as GDAL has read it.
-        int declared = 0;
-        const double noData = GDALGetRasterNoDataValue(band_, &declared);
-        if (declared != 0) {
-            std::replace(pixels.begin(), pixels.end(), noData, std::numeric_limits<double>::quiet_NaN());
-            return;
-        }
-    }
-    if ((flags & GMF_ALL_VALID) != 0) {
-        return;
-    }
-    GDALRasterBandH mask = GDALGetMaskBand(band_);
-    std::vector<unsigned char> known(static_cast<std::size_t>(columns()));
-    for (int row = 0; row < rows(); ++row) {
-        if (GDALRasterIO(mask, GF_Read, 0, row, columns(), 1, known.data(), columns(), 1, GDT_Byte, 0, 0) != CE_None) {
-            failToRead();
-        }
-        for (std::size_t column = 0; column < known.size(); ++column) {
-            if (known[column] == 0) {
-                pixels[static_cast<std::size_t>(row) * known.size() + column] =
-                    std::numeric_limits<double>::quiet_NaN();
-            }
-        }
-    }
+    return heights;
 }
 
 }  // namespace scene

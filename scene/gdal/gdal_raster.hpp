@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scene/gdal/gdal_session.hpp"
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/raster_check.hpp"
 
 namespace scene {
 
@@ -33,6 +33,15 @@ public:
     /// Returns the number that means no data, as a height: with scale and offset. Returns nullopt if the file declares
     /// none.
     [[nodiscard]] std::optional<double> noData() const;
+    [[nodiscard]] bool isPng() const { return driver() == "PNG"; }
+    /// Returns whether the numbers are bytes with a sign, which GDAL before 3.7 reads without it.
+    [[nodiscard]] bool isSignedByte() const;
+    /// Returns the size in which the numbers of the band are exact.
+    [[nodiscard]] NumberSize numberSize() const;
+    /// Returns the height that a number of the band stands for: with scale and offset.
+    [[nodiscard]] double heightOf(double number) const { return isScaled() ? number * scale_ + offset_ : number; }
+    /// Returns the files of the raster, the one that was opened first.
+    [[nodiscard]] std::vector<std::filesystem::path> files() const;
     /// Returns GDAL's warnings so far, one line each.
     [[nodiscard]] std::vector<std::string> warnings() const { return session_.warnings(name_); }
 
@@ -41,21 +50,16 @@ public:
     [[nodiscard]] bool complete() const;
     /// Returns the rows in the file's order, with scale and offset applied. A pixel without data is NaN.
     /// Calls check.read().
-    [[nodiscard]] std::vector<double> pixels(const RasterCheck& check) const;
+    [[nodiscard]] RasterHeights pixels(const RasterCheck& check) const;
     [[noreturn]] void fail(const std::string& message) const;
+    /// Throws base::InputError with GDAL's complaint about the pixels.
+    [[noreturn]] void failToRead() const;
 
 private:
     /// Chooses the one band that is not a mask of opacity.
     void chooseBand();
     [[noreturn]] void failForVariables() const;
-    [[nodiscard]] bool isPng() const { return driver() == "PNG"; }
-    /// Returns whether the numbers are bytes with a sign, which GDAL before 3.7 reads without it.
-    [[nodiscard]] bool isSignedByte() const;
-    [[nodiscard]] double heightOf(double number) const;
-    /// Returns the numbers of the band as the file holds them.
-    [[nodiscard]] std::vector<double> numbers(const RasterCheck& check) const;
-    void mask(std::vector<double>& pixels) const;
-    [[noreturn]] void failToRead() const;
+    [[nodiscard]] bool isScaled() const { return scale_ != 1 || offset_ != 0; }
 
     std::string name_;
     GdalSession session_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cpl_conv.h>
+#include <cpl_string.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
 
@@ -22,6 +23,11 @@ struct FreeReference {
     void operator()(OGRSpatialReferenceH reference) const { OSRDestroySpatialReference(reference); }
 };
 using SpatialReference = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>, FreeReference>;
+
+struct FreeList {
+    void operator()(char** list) const { CSLDestroy(list); }
+};
+using GdalList = std::unique_ptr<char*, FreeList>;
 
 struct FreeText {
     void operator()(char* text) const { CPLFree(text); }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "base/input_error.hpp"
 
@@ -42,15 +43,31 @@ public:
         png_read_update_info(png_, info_);
         return true;
     }
-    /// Reads the pixels into rows of rowBytes().
+    /// Reads all pixels into rows of rowBytes().
     [[nodiscard]] bool readRows(png_bytepp rows) {
         if (setjmp(png_jmpbuf(png_)) != 0) {
             return false;
         }
         png_read_image(png_, rows);
+        return true;
+    }
+    /// Reads the next row of a picture that is not interlaced.
+    [[nodiscard]] bool readRow(png_bytep row) {
+        if (setjmp(png_jmpbuf(png_)) != 0) {
+            return false;
+        }
+        png_read_row(png_, row, nullptr);
+        return true;
+    }
+    /// Reads what follows the pixels.
+    [[nodiscard]] bool readEnd() {
+        if (setjmp(png_jmpbuf(png_)) != 0) {
+            return false;
+        }
         png_read_end(png_, nullptr);
         return true;
     }
+    [[nodiscard]] bool isInterlaced() const { return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE; }
     [[nodiscard]] bool isGrey() const { return (png_get_color_type(png_, info_) & PNG_COLOR_MASK_COLOR) == 0; }
     [[nodiscard]] int columns() const { return static_cast<int>(png_get_image_width(png_, info_)); }
     [[nodiscard]] int rows() const { return static_cast<int>(png_get_image_height(png_, info_)); }
@@ -76,7 +93,8 @@ private:
 
 }  // namespace
 
-std::vector<double> greysOfPng(const std::string& file, int columns, int rows) {
+void readGreysOfPng(const std::string& file, int columns, int rows,
+                    const std::function<void(int row, std::span<double> greys)>& take) {
     const std::unique_ptr<std::FILE, CloseFile> stream(std::fopen(file.c_str(), "rb"));
     if (!stream) {
         throw base::InputError(file + ": cannot be read; check the path");
@@ -88,23 +106,36 @@ std::vector<double> greysOfPng(const std::string& file, int columns, int rows) {
     if (!png.isGrey() || png.columns() != columns || png.rows() != rows) {
         throw base::InputError(file + ": has changed since it was opened; it must be a grey picture of the same size");
     }
-    std::vector<png_byte> bytes(png.rowBytes() * static_cast<std::size_t>(rows));
-    std::vector<png_bytep> starts;
-    for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
-        starts.push_back(bytes.data() + row * png.rowBytes());
-    }
-    if (!png.readRows(starts.data())) {
-        throw base::InputError(file + ": its pixels cannot be read: " + png.complaint());
-    }
-    std::vector<double> greys(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    const std::size_t size = png.numberBytes(), step = size * png.channels();
-    auto grey = greys.begin();
-    for (const png_byte* const row : starts) {
-        for (std::size_t at = 0; at < step * static_cast<std::size_t>(columns); at += step) {
-            *grey++ = size == 1 ? row[at] : row[at] * 256 + row[at + 1];  // the first byte is the higher one
+    const auto readable = [&](bool read) {
+        if (!read) {
+            throw base::InputError(file + ": its pixels cannot be read: " + png.complaint());
         }
+    };
+    const auto height = static_cast<std::size_t>(rows);
+    std::vector<png_byte> bytes(png.rowBytes() * (png.isInterlaced() ? height : 1));
+    if (png.isInterlaced()) {
+        std::vector<png_bytep> starts;
+        for (std::size_t row = 0; row < height; ++row) {
+            starts.push_back(bytes.data() + row * png.rowBytes());
+        }
+        readable(png.readRows(starts.data()));
     }
-    return greys;
+    std::vector<double> greys(static_cast<std::size_t>(columns));
+    const std::size_t size = png.numberBytes(), step = size * png.channels();
+    for (int row = 0; row < rows; ++row) {
+        const png_byte* from = bytes.data();
+        if (png.isInterlaced()) {
+            from += static_cast<std::size_t>(row) * png.rowBytes();
+        } else {
+            readable(png.readRow(bytes.data()));
+        }
+        for (double& grey : greys) {
+            grey = size == 1 ? from[0] : from[0] * 256 + from[1];  // the first byte is the higher one
+            from += step;
+        }
+        take(row, greys);
+    }
+    readable(png.readEnd());
 }
 
 }  // namespace scene

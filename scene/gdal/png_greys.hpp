@@ -2,16 +2,19 @@
 // Private to this folder.
 #pragma once
 
+#include <functional>
+#include <span>
 #include <string>
-#include <vector>
 
 namespace scene {
 
-/// Reads the grey channel of a PNG as the file holds it: rows from the north, numbers of 1 to 16 bits.
+/// Reads the grey channel of a PNG as the file holds it, in numbers of 1 to 16 bits. Calls `take` with each row from
+/// the north, whose numbers it may change. Only the pixels of an interlaced picture are held in memory.
 ///
 /// GDAL 3.6.2 swaps the two bytes of each number in an interlaced picture of 16 bits, so that its numbers are not used.
 /// Throws base::InputError, whose message begins with the file, if the picture is damaged, coloured, or has another
 /// size.
-[[nodiscard]] std::vector<double> greysOfPng(const std::string& file, int columns, int rows);
+void readGreysOfPng(const std::string& file, int columns, int rows,
+                    const std::function<void(int row, std::span<double> greys)>& take);
 
 }  // namespace scene

@@ -118,18 +118,18 @@ double heightOf(base::TextReader& text, const EsriGrid& grid) {
 void checkEsriHeader(base::TextReader& text, const RasterCheck& check) {
     EsriGrid grid;
     readHeader(text, grid);
-    check(grid.columns, grid.rows, !grid.noData);
+    check({grid.columns, grid.rows, NumberSize::doubles, !grid.noData});
 }
 
 EsriGrid readEsriText(base::TextReader& text, const RasterCheck& check, std::size_t mostHeights) {
     EsriGrid grid;
     grid.file = text.file();
     readHeader(text, grid);
-    check(grid.columns, grid.rows, !grid.noData);
+    check({grid.columns, grid.rows, NumberSize::doubles, !grid.noData});
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
     grid.heights.reserve(std::min(cells, mostHeights));
     for (std::size_t i = 0; i < cells; ++i) {
-        grid.heights.push_back(heightOf(text, grid));
+        grid.heights.add(heightOf(text, grid));
         if (i % static_cast<std::size_t>(grid.columns) == 0) {
             grid.lines.push_back(text.line());
             check.read(static_cast<double>(i) / static_cast<double>(cells));
@@ -164,26 +164,22 @@ sand::CellRect cellsWithData(const EsriGrid& grid) {
     return filled.empty() ? sand::CellRect{} : filled;
 }
 
-EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
+EsriGrid withoutEmptyEdges(EsriGrid grid) {
     const sand::CellRect filled = cellsWithData(grid);
     if (filled.empty()) {
         throw base::InputError(grid.file + ": every cell is a no-data cell; there is no terrain in it");
     }
-    EsriGrid result = grid;
-    result.columns = filled.x1 - filled.x0;
-    result.rows = filled.y1 - filled.y0;
-    result.westEdge += filled.x0 * grid.cellSize;
-    result.southEdge += filled.y0 * grid.cellDepth.value_or(grid.cellSize);
-    result.heights.clear();
-    for (int row = filled.y1 - 1; row >= filled.y0; --row) {
-        const double* cells = grid.heights.data() + grid.index(0, row);
-        result.heights.insert(result.heights.end(), cells + filled.x0, cells + filled.x1);
-    }
+    const int north = grid.rows - filled.y1;  // rows that are cut off
+    grid.heights.keepPart(grid.columns, {filled.x0, north, filled.x1, grid.rows - filled.y0});
+    grid.columns = filled.x1 - filled.x0;
+    grid.rows = filled.y1 - filled.y0;
+    grid.westEdge += filled.x0 * grid.cellSize;
+    grid.southEdge += filled.y0 * grid.cellDepth.value_or(grid.cellSize);
     if (!grid.lines.empty()) {
-        const auto first = grid.lines.begin() + (grid.rows - filled.y1);
-        result.lines.assign(first, first + result.rows);
+        grid.lines.erase(grid.lines.begin(), grid.lines.begin() + north);
+        grid.lines.resize(static_cast<std::size_t>(grid.rows));
     }
-    return result;
+    return grid;
 }
 
 double withFewDecimals(double height, double unit) {

@@ -3,15 +3,14 @@
 
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <string>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "base/text_reader.hpp"
 #include "sand/model/cell_array.hpp"
+#include "scene/import/raster_check.hpp"
+#include "scene/import/raster_heights.hpp"
 #include "scene/model/georeference.hpp"
 
 namespace scene {
@@ -27,7 +26,7 @@ struct EsriGrid {
     int columns = 0, rows = 0;
     double cellSize = 0;                  // side of a cell from west to east [file's length unit]
     double westEdge = 0, southEdge = 0;   // edges of the south-west cell [file's length unit]
-    std::vector<double> heights;          // [file's height unit], row by row, north first; NaN without data
+    RasterHeights heights;                // [file's height unit], row by row, north first; NaN without data
     std::optional<double> cellDepth{};    // side of a cell from south to north; nullopt if it is cellSize
     std::optional<double> noData{};       // number that means no data in the file
     std::string file{};                   // the file that it was read from, for messages
@@ -45,43 +44,9 @@ struct EsriGrid {
                static_cast<std::size_t>(column);
     }
     /// Converts heights from the file's unit to the unit of lengths.
-    void countHeightsInLengths() {
-        for (double& height : heights) {
-            height /= units.heightsPerLength;
-        }
-    }
+    void countHeightsInLengths() { heights.divide(units.heightsPerLength); }
     /// Throws base::InputError about this cell, with file and line, or with its row if there are no lines.
     [[noreturn]] void fail(int column, int rowFromSouth, const std::string& message) const;
-};
-
-/// Calls of a program while a raster is read. Each may be empty.
-class RasterCheck {
-public:
-    /// Called with the size before the pixels are read. It throws to refuse the raster. `complete` says that the header
-    /// marks no number as no data, so that every pixel has a height.
-    using Size = std::function<void(int columns, int rows, bool complete)>;
-    /// Called with the part of the pixels that is read, 0 to 1. It must not throw.
-    using Progress = std::function<void(double share)>;
-
-    RasterCheck() = default;
-    template <class Function>
-    requires std::is_convertible_v<Function, Size> RasterCheck(Function size, Progress progress = {})
-        : size_(std::move(size)), progress_(std::move(progress)) {}
-
-    void operator()(int columns, int rows, bool complete) const {
-        if (size_) {
-            size_(columns, rows, complete);
-        }
-    }
-    void read(double share) const {
-        if (progress_) {
-            progress_(share);
-        }
-    }
-
-private:
-    Size size_;
-    Progress progress_;
 };
 
 /// Reads an ESRI ASCII grid. `check` may be empty. Cells that are not square have dx and dy in place of cellsize, as
@@ -96,8 +61,9 @@ void checkEsriHeader(base::TextReader& text, const RasterCheck& check);
 [[nodiscard]] sand::CellRect cellsWithData(const EsriGrid& grid);
 
 /// Returns the grid without the rows and columns at its edges that hold no data at all. Exporters leave such edges
-/// around a rotated or resampled raster. Throws base::InputError if no cell has data.
-[[nodiscard]] EsriGrid withoutEmptyEdges(const EsriGrid& grid);
+/// around a rotated or resampled raster. A grid that is moved in is not copied. Throws base::InputError if no cell has
+/// data.
+[[nodiscard]] EsriGrid withoutEmptyEdges(EsriGrid grid);
 
 /// Returns a height with as few decimals as distinguish it from heights a `unit` away. The error is at most a hundredth
 /// of a unit.

@@ -121,9 +121,10 @@ private:
 };
 
 /// Reads the numbers row by row.
-void readHeights(std::istream& stream, EsriGrid& grid) {
+RasterHeights heightsFrom(std::istream& stream, const EsriGrid& grid, const RasterCheck& check) {
     const auto width = static_cast<std::size_t>(grid.columns);
-    grid.heights.reserve(width * static_cast<std::size_t>(grid.rows));
+    RasterHeights heights(NumberSize::floats);
+    heights.reserve(width * static_cast<std::size_t>(grid.rows));
     std::vector<float> row(width);
     for (int fromNorth = 0; fromNorth < grid.rows; ++fromNorth) {
         stream.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(width * sizeof(float)));
@@ -136,8 +137,12 @@ void readHeights(std::istream& stream, EsriGrid& grid) {
                 fmt::format("{}: the height of pixel {}, {} (from the north-west) is infinite; mask it in Gwyddion",
                             grid.file, infinite - row.begin() + 1, fromNorth + 1));
         }
-        grid.heights.insert(grid.heights.end(), row.begin(), row.end());
+        for (const float height : row) {
+            heights.add(height);
+        }
+        check.read((fromNorth + 1.0) / grid.rows);
     }
+    return heights;
 }
 
 }  // namespace
@@ -170,8 +175,8 @@ EsriGrid readGsf(const std::filesystem::path& file, const RasterCheck& check) {
         throw base::InputError(fmt::format("{}: {} x {} pixels are {} bytes, but {} follow the header", file.string(),
                                            grid.columns, grid.rows, cells * sizeof(float), behind));
     }
-    check(grid.columns, grid.rows, false);  // any number may be NaN
-    readHeights(stream, grid);
+    check({grid.columns, grid.rows, NumberSize::floats, false});  // any number may be NaN
+    grid.heights = heightsFrom(stream, grid, check);
     grid.warnings = undeclaredNoData(grid, "if it does, mask these pixels in Gwyddion");
     return grid;
 }

@@ -51,7 +51,8 @@ public:
     [[nodiscard]] virtual EsriGrid readImage(const std::filesystem::path& file, const RasterCheck& check) const = 0;
 
     /// Returns the function's values at the middle of every cell. Refuses a value that is not finite, with x and y.
-    [[nodiscard]] virtual EsriGrid evaluate(const Function& function) const = 0;
+    /// Calls check.read().
+    [[nodiscard]] virtual EsriGrid evaluate(const Function& function, const RasterCheck& check) const = 0;
 
     /// Returns a GeoTIFF of one band of doubles, as bytes. `file` is for messages.
     [[nodiscard]] virtual base::Bytes geoTiff(const EsriGrid& grid, const std::string& file) const = 0;
@@ -65,12 +66,11 @@ public:
                                           const std::string& file) const = 0;
 };
 
-/// Memory of a raster: 16 bytes per pixel, so that a field of the largest sides just fits.
-inline constexpr double kRasterBytesPerPixel = 16;
-inline constexpr double kMostRasterBytes = 4294967296.0;
+/// Largest memory of a raster's heights, so that doubles for a field of the largest sides just fit.
+inline constexpr double kMostRasterBytes = 2147483648.0;
 
 /// Symbol that the module defines, with C linkage. It returns the one object, which is never deleted.
-inline constexpr const char* kImportSymbol = "sandwallImport6";
+inline constexpr const char* kImportSymbol = "sandwallImport7";
 using GetImporter = const Importer*();
 
 /// Loads sandwall-import.so from the folder of this program. Returns the same object at every call. Only this function

@@ -4,13 +4,8 @@
 #include <fmt/format.h>
 
 #include "base/input_error.hpp"
-#include "scene/import/importer.hpp"
 
 namespace scene {
-
-std::int64_t bytesToRead(int columns, int rows) {
-    return static_cast<std::int64_t>(kRasterBytesPerPixel) * columns * rows;
-}
 
 void requireBytes(std::int64_t needed, std::int64_t freeBytes, const std::string& file, const std::string& what,
                   const std::string& advice) {
@@ -23,9 +18,8 @@ void requireBytes(std::int64_t needed, std::int64_t freeBytes, const std::string
 }
 
 RasterCheck fitsMemory(const std::string& file, std::int64_t freeBytes) {
-    return [=](int columns, int rows, bool /*complete*/) {
-        requireBytes(bytesToRead(columns, rows), freeBytes, file,
-                     fmt::format("{} x {} pixels of a raster", columns, rows),
+    return [=](const RasterSize& size) {
+        requireBytes(size.bytes(), freeBytes, file, fmt::format("{} x {} pixels of a raster", size.columns, size.rows),
                      "coarsen it, or take a machine with more memory");
     };
 }

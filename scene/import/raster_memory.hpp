@@ -4,12 +4,9 @@
 #include <cstdint>
 #include <string>
 
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/raster_check.hpp"
 
 namespace scene {
-
-/// Returns a lower bound of a program's memory while it reads the pixels of a raster of this size [byte].
-[[nodiscard]] std::int64_t bytesToRead(int columns, int rows);
 
 /// Throws base::InputError unless `needed` bytes fit into `freeBytes`. The message is "FILE: WHAT need at least 4.0
 /// GiB, and 1.0 GiB are free: ADVICE".

@@ -8,7 +8,7 @@
 namespace scene {
 
 SizeChecks checksOfOneReplica(const std::string& file, std::int64_t freeBytes) {
-    return {.raster = [fits = fitsMemory(file, freeBytes)](int columns, int rows) { fits(columns, rows, false); },
+    return {.raster = fitsMemory(file, freeBytes),
             .field = [=](const sand::FieldSize& size) { requireReplica(size, file, freeBytes); }};
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "scene/import/raster_check.hpp"
 #include "scene/model/scene.hpp"
 
 namespace scene {
@@ -12,7 +13,7 @@ namespace scene {
 /// the scene does not fit. Each may be empty.
 struct SizeChecks {
     /// Receives the size of a raster file before its pixels are read. The program holds all pixels while it reads them.
-    std::function<void(int columns, int rows)> raster{};
+    std::function<void(const RasterSize& size)> raster{};
     /// Receives the size of the field before its heights are made.
     ///
     /// It is called once, as soon as the size is known. For a raster whose header marks no data, that is before its

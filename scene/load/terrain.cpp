@@ -73,18 +73,18 @@ public:
         : terrain_(terrain), checks_(checks), computed_(file.has("field")), tin_(file.has("tin")) {}
 
     /// Called with the size of the source.
-    void operator()(int columns, int rows, bool complete) {
-        if (columns > sand::kMaxSide || rows > sand::kMaxSide) {
+    void operator()(const RasterSize& size) {
+        if (size.columns > sand::kMaxSide || size.rows > sand::kMaxSide) {
             terrain_.fail("file", fmt::format("{} has {} x {} cells; a scene's are at most {} a side",
-                                              (terrain_.folder() / terrain_.text("file")).string(), columns, rows,
-                                              sand::kMaxSide));
+                                              (terrain_.folder() / terrain_.text("file")).string(), size.columns,
+                                              size.rows, sand::kMaxSide));
         }
         if (checks_.raster && !computed_) {
-            checks_.raster(columns, rows);
+            checks_.raster(size);
         }
         // A grid of rock has the same cells, so that no edge without data is cut off.
-        if (complete || terrain_.has("bedrock")) {
-            askOfField(columns, rows);
+        if (size.complete || terrain_.has("bedrock")) {
+            askOfField(size.columns, size.rows);
         }
     }
     /// Called with the size of the field. Returns at once if the size was checked before.
@@ -131,7 +131,8 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     }
     requireSquareCells(terrain, sourceKinds().at(static_cast<std::size_t>(kind)), source.raster);
     // A grid of rock has the same cells, including those at the edges.
-    const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
+    const EsriGrid grid =
+        terrain.has("bedrock") ? std::move(source.raster) : withoutEmptyEdges(std::move(source.raster));
     scene.georeference = source.referenceAt(grid);
     const double datum = scene.georeference.datum;
     if (source.onMap) {
@@ -204,9 +205,9 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
                 [&](int column, int row) { return std::max(field.height(column, row) - layer, -sand::kMaxHeight); });
     }
     if (terrain.has("bedrock")) {
-        const auto check = [&](int columns, int rows, bool /*complete*/) {
+        const auto check = [&](const RasterSize& size) {
             if (checks.raster) {
-                checks.raster(columns, rows);
+                checks.raster(size);
             }
         };
         const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), check);

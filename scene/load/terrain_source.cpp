@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -44,9 +45,7 @@ EsriGrid readImage(const host::TomlTable& terrain, const RasterCheck& check) {
     const double width = terrain.numberOr("width", 2.0, host::kPositive);
     EsriGrid image = importerFor(terrain).readImage(fileOf(terrain), check);
     image.cellSize = width / image.columns;
-    for (double& height : image.heights) {
-        height = low + height * (high - low);
-    }
+    image.heights.multiply(high - low, low);
     return image;
 }
 
@@ -84,10 +83,10 @@ EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrai
                    fmt::format("{} columns of x make {} rows of y; leave rows out", function.columns, function.rows));
     }
     field.finish();
-    check(function.columns, function.rows, true);
+    check({function.columns, function.rows, NumberSize::doubles, true});
     const Importer& importer = importerFor(terrain);
     try {
-        return importer.evaluate(function);
+        return importer.evaluate(function, check);
     } catch (const base::InputError& error) {
         terrain.fail("z", error.what());
     }
@@ -113,11 +112,9 @@ TerrainSource readScan(const host::TomlTable& terrain, const RasterCheck& check)
     if (scan.cellDepth) {
         *scan.cellDepth /= reference.lengthPerUnit;
     }
-    for (double& height : scan.heights) {
-        height /= reference.heightPerUnit;
-        if (std::isinf(height)) {
-            failToScale();
-        }
+    scan.heights.divide(reference.heightPerUnit);
+    if (std::any_of(scan.heights.begin(), scan.heights.end(), [](double height) { return std::isinf(height); })) {
+        failToScale();
     }
     return source;
 }

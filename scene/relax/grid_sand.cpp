@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "scene/import/rock_fit.hpp"
@@ -203,10 +204,10 @@ std::int64_t GridSand::volume() const {
 }
 
 EsriGrid GridSand::toGrid(const EsriGrid& before) const {
-    EsriGrid result = before;
+    std::vector<double> heights(before.heights.begin(), before.heights.end());
     for (int y = 0; y < field.rows(); ++y) {
         for (int x = 0; x < field.columns(); ++x) {
-            double& height = result.heights[result.index(cells.x0 + x, cells.y0 + y)];
+            double& height = heights[before.index(cells.x0 + x, cells.y0 + y)];
             const std::int32_t units = field.height(x, y);
             if (isWall(x, y) || units == scale.toUnits(height)) {
                 continue;
@@ -217,6 +218,9 @@ EsriGrid GridSand::toGrid(const EsriGrid& before) const {
             }
         }
     }
+    EsriGrid result = withoutHeights(before);
+    result.heights = std::move(heights);
+    result.noData = before.noData;
     return result;
 }
 

@@ -39,7 +39,7 @@ sand::tin::LatticePoint spacingOf(const EsriGrid& raster) {
 
 }  // namespace
 
-Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal) {
+Thinned thin(EsriGrid raster, const sand::tin::SimplifyGoal& goal) {
     if (std::min(raster.columns, raster.rows) < 2) {
         throw base::InputError(fmt::format("{}: {} x {} cells with data have no area between their middles",
                                            raster.file, raster.columns, raster.rows));
@@ -58,6 +58,7 @@ Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal) {
             heights.push_back(raster.at(column, row));
         }
     }
+    raster.heights = {};  // frees memory before the TIN takes some
     // The TIN reaches from middle to middle. Beyond, the ground would be a strip whose only vertices are the corners,
     // and would end in a cliff.
     const sand::tin::Raster samples{heights, raster.columns, raster.rows, {0, 0}, spacing};

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "host/memory.hpp"
 #include "host/print_line.hpp"
@@ -99,12 +100,12 @@ void relaxTin(const Options& options) {
         warnings = undeclaredNoData(points, options.in);
         statement = statementOf(points, options.in);
     } else {
-        const EsriGrid raster = readRaster(options.in, fitsSolver(options.in, host::freeMemoryOfProcess()));
+        EsriGrid raster = readRaster(options.in, fitsSolver(options.in, host::freeMemoryOfProcess()));
         checkLengths(raster, options);
         statement = statementOf(raster);
         warnings = raster.warnings;
-        thinned =
-            thin(withoutEmptyEdges(raster), {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
+        thinned = thin(withoutEmptyEdges(std::move(raster)),
+                       {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
     TinSand sand = thinned ? toTin(*thinned, options.in, material) : toTin(points, options.in, material);
     host::requireWritable(options.out);  // to report a faulty OUT before hours of work

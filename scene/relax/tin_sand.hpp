@@ -59,10 +59,11 @@ struct Thinned {
     std::vector<std::pair<sand::tin::Vertex, sand::tin::Vertex>> outline;  // outline of the holes: edges between points
 };
 
-/// Chooses the points of a raster until `goal` is met. Throws base::InputError for:
+/// Chooses the points of a raster until `goal` is met. The heights of a raster that is moved in are freed as early as
+/// possible. Throws base::InputError for:
 /// - a single row or column, cells more oblong than 1 : 1000, cells without data that are not square,
 /// - fewer vertices than the outline of the cells without data has.
-[[nodiscard]] Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal);
+[[nodiscard]] Thinned thin(EsriGrid raster, const sand::tin::SimplifyGoal& goal);
 
 /// Makes a TIN of sand. `file` is for messages. The lattice of points has a step of 2^-19 of the longer side, rounded
 /// up by at most 1/32. Throws base::InputError for:

@@ -23,14 +23,14 @@ nlohmann::ordered_json jsonOf(const RasterStatement& statement) {
 }
 
 RasterCheck fitsSolver(const std::string& file, std::int64_t freeBytes) {
-    return [=, memory = fitsMemory(file, freeBytes)](int columns, int rows, bool complete) {
-        if (columns > sand::kMaxSide || rows > sand::kMaxSide) {
+    return [=, memory = fitsMemory(file, freeBytes)](const RasterSize& size) {
+        if (size.columns > sand::kMaxSide || size.rows > sand::kMaxSide) {
             throw base::InputError(
                 fmt::format("{}: has {} x {} cells, and {} a side is the most; cut it with gdal_translate -srcwin, or "
                             "coarsen it: gdal_translate -r average -outsize 50% 50%",
-                            file, columns, rows, sand::kMaxSide));
+                            file, size.columns, size.rows, sand::kMaxSide));
         }
-        memory(columns, rows, complete);
+        memory(size);
     };
 }
 

@@ -28,7 +28,7 @@ protected:
         grid.units.heightName = "m";
         for (int row = 0; row < grid.rows; ++row) {
             for (int column = 0; column < grid.columns; ++column) {
-                grid.heights.push_back(1200 + 12 * std::sin(0.2 * column) * std::cos(0.15 * row));
+                grid.heights.add(1200 + 12 * std::sin(0.2 * column) * std::cos(0.15 * row));
             }
         }
         return grid;

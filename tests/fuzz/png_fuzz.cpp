@@ -11,8 +11,8 @@
 
 namespace {
 
-constexpr std::size_t kMostPixels = 1 << 18;         // of a picture that is written again
-constexpr std::int64_t kMostBytes = 16 * (1 << 18);  // of a raster, so that an input takes less than a second
+constexpr std::size_t kMostPixels = 1 << 18;        // of a picture that is written again
+constexpr std::int64_t kMostBytes = 4 * (1 << 18);  // of a raster, so that an input takes less than a second
 
 void readPicture(const std::string& file) {
     const pictures::Image picture = pictures::readPng(file);

@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr std::int64_t kMostRaster = 16 * (1 << 18);  // [byte], so that an input takes less than a second
+constexpr std::int64_t kMostRaster = 8 * (1 << 18);  // [byte], so that an input takes less than a second
 
 bool sameHeights(const scene::EsriGrid& one, const scene::EsriGrid& other) {
     return one.columns == other.columns && one.rows == other.rows &&

@@ -139,16 +139,17 @@ TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
               "are free; use fewer cells, or more hosts");
 }
 
-// Only the master reads a raster. It takes 16 bytes per pixel.
+// Only the master reads a raster.
 TEST(StartUp, RefusesARasterWhosePixelsDoNotFitTheMastersHost) {
     const auto refusalOn = [](std::int64_t free) {
         return test::refusalOf([free] {
-            master::requireMemoryOfRaster({{"a", free}, {"a", free}, {"b", kGiB}}, 16384, 16384, "s.toml");
+            master::requireMemoryOfRaster({{"a", free}, {"a", free}, {"b", kGiB}},
+                                          {16384, 16384, scene::NumberSize::doubles}, "s.toml");
         });
     };
-    EXPECT_EQ(refusalOn(4 * kGiB), "nothing") << "the other ranks read nothing";
-    EXPECT_EQ(refusalOn(2 * kGiB),
-              "s.toml: 16384 x 16384 pixels of a raster need at least 4.0 GiB for the one rank on a, where 2.0 GiB are "
+    EXPECT_EQ(refusalOn(2 * kGiB), "nothing") << "the other ranks read nothing";
+    EXPECT_EQ(refusalOn(kGiB),
+              "s.toml: 16384 x 16384 pixels of a raster need at least 2.0 GiB for the one rank on a, where 1.0 GiB are "
               "free; coarsen it");
 }
 

@@ -28,7 +28,10 @@ protected:
         std::vector<std::string> all;
         (void)scene::loadScene(
             write("s.toml", text),
-            {.raster = [&](int columns, int rows) { all.push_back(fmt::format("raster {} x {}", columns, rows)); },
+            {.raster =
+                 [&](const scene::RasterSize& size) {
+                     all.push_back(fmt::format("raster {} x {}", size.columns, size.rows));
+                 },
              .field =
                  [&](const sand::FieldSize& size) {
                      all.push_back(fmt::format("{} {} x {}", size.nominal ? "TIN" : "field", size.columns, size.rows));
@@ -71,8 +74,8 @@ TEST_F(SceneMemory, OfARasterIsAskedBeforeItsPixelsAreRead) {
     const std::string head = "ncols 4096\nnrows 4096\ncellsize 1\n";
     const std::string text = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n" + kRest;
     write("t.asc", head + "1 word\n");
-    EXPECT_EQ(refusalOn(kGigabyte / 4 - 1, text),
-              "s.toml: 4096 x 4096 pixels of a raster need at least 0.2 GiB, and 0.2 GiB are free: coarsen it, or take "
+    EXPECT_EQ(refusalOn(kGigabyte / 8 - 1, text),
+              "s.toml: 4096 x 4096 pixels of a raster need at least 0.1 GiB, and 0.1 GiB are free: coarsen it, or take "
               "a machine with more memory");
     const std::string read = refusalOn(kGigabyte / 4, text);
     EXPECT_NE(read.find("t.asc:4: a height must be a finite number, got 'word'"), std::string::npos) << read;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "base/text_reader.hpp"
@@ -23,9 +24,8 @@ constexpr double kToolShare = 1.0 / 40;
 
 /// Returns a check of the size of a grid whose text has `bytes` bytes. The reader copies the text.
 scene::RasterCheck fits(const std::string& name, std::int64_t bytes, std::int64_t memory) {
-    return [name, bytes, memory](int columns, int rows, bool /*complete*/) {
-        const std::int64_t numbers = std::int64_t{columns} * rows * static_cast<std::int64_t>(sizeof(double));
-        requireMemory(name, {columns, rows, false}, memory, numbers + 2 * bytes);
+    return [name, bytes, memory](const scene::RasterSize& size) {
+        requireMemory(name, {size.columns, size.rows, false}, memory, size.bytes() + 2 * bytes);
     };
 }
 
@@ -58,7 +58,7 @@ void requireGridFits(std::string_view begin, std::int64_t bytes, const std::stri
 
 scene::Scene sceneOfGrid(std::string_view text, const std::string& name, std::int64_t memory) {
     base::TextReader reader(text, name);
-    const scene::EsriGrid whole =
+    scene::EsriGrid whole =
         scene::readEsriText(reader, fits(name, static_cast<std::int64_t>(text.size()), memory), text.size() / 2 + 1);
     scene::requireLengths(whole, "");
     if (whole.aspect() != 1) {
@@ -67,7 +67,7 @@ scene::Scene sceneOfGrid(std::string_view text, const std::string& name, std::in
                         "-tr {1} {1} -r bilinear",
                         name, whole.cellSize, *whole.cellDepth));
     }
-    const scene::EsriGrid grid = scene::withoutEmptyEdges(whole);
+    const scene::EsriGrid grid = scene::withoutEmptyEdges(std::move(whole));
     scene::Scene scene;
     scene.name = stemOf(name);
     scene.warnings = grid.warnings;

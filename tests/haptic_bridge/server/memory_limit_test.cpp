@@ -33,11 +33,12 @@ TEST_F(ServerMemory, OfAFieldIsAskedBeforeItsHeightsAreMade) {
     expectRefused(field + "[terrain]\nkind = \"dunes\"\n", "16384 x 16384 cells need at least 4.0 GiB, and ");
 }
 
-// A reader holds 16 bytes per pixel. If the pixels were read first, the word in the file would be refused instead.
+// The heights of a text take 8 bytes per pixel. If the pixels were read first, the word in the file would be refused
+// instead.
 TEST_F(ServerMemory, OfARasterIsAskedBeforeItsPixelsAreRead) {
     folder_.write("t.asc", "ncols 16384\nnrows 16384\ncellsize 1\nNODATA_value -1\n1 word\n");
     expectRefused("[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n",
-                  "16384 x 16384 pixels of a raster need at least 4.0 GiB, and ");
+                  "16384 x 16384 pixels of a raster need at least 2.0 GiB, and ");
 }
 
 constexpr const char* kTinScene = R"(

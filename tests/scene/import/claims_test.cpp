@@ -195,7 +195,7 @@ TEST_F(Claims, SignedBytesHaveTheirSign) {
         return scene::readRaster(path("t.tif")).heights;
     };
     EXPECT_EQ(heights({}), (std::vector<double>{-3, 127, -128}));
-    const std::vector<double> masked = heights(-128);
+    const scene::RasterHeights masked = heights(-128);
     EXPECT_EQ(masked[0], -3);
     EXPECT_TRUE(std::isnan(masked[2])) << "a number with a sign means no data";
 }

@@ -210,7 +210,7 @@ long residentKilobytes() {
     return usage.ru_maxrss;
 }
 
-// 8192 x 8192 pixels take 512 MiB as doubles. The files are sparse.
+// 8192 x 8192 pixels take 256 MiB as floats. The files are sparse.
 TEST_F(Import, ARastersSizeIsLookedAtBeforeItsPixelsAreRead) {
     constexpr int kSide = 8192;
     Raster huge{.columns = kSide, .rows = kSide, .heights = {}, .type = GDT_Byte, .options = {"SPARSE_OK=TRUE"}};
@@ -222,8 +222,8 @@ TEST_F(Import, ARastersSizeIsLookedAtBeforeItsPixelsAreRead) {
     write("t.gsf", scan);
     std::filesystem::resize_file(folder_ / "t.gsf", scan.size() + std::uintmax_t{4} * kSide * kSide);
     const long before = residentKilobytes();
-    const auto refuse = [](int columns, int rows) {
-        throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
+    const auto refuse = [](const scene::RasterSize& size) {
+        throw base::InputError(fmt::format("{} x {} are too many", size.columns, size.rows));
     };
     for (const std::string terrain :
          {"kind = \"dem\"\nfile = \"t.tif\"", "kind = \"dem\"\nfile = \"f.tif\"",
@@ -248,8 +248,8 @@ TEST_F(Import, ARastersSizeIsLookedAtBeforeItsPixelsAreRead) {
 TEST_F(Import, HugeRastersAreRefusedBeforeTheyAreRead) {
     writeRaster("t.tif", {.columns = 40000, .rows = 20000, .heights = {}, .options = {"SPARSE_OK=TRUE"}});
     EXPECT_EQ(refusal(kDem),
-              "t.tif: 40000 x 20000 pixels would take 12.8 GB, and 4.3 GB is the most; coarsen it: gdal_translate -r "
-              "average -outsize 57% 0 t.tif coarser.tif");
+              "t.tif: 40000 x 20000 pixels would take 3.2 GB, and 2.1 GB is the most; coarsen it: gdal_translate -r "
+              "average -outsize 81% 0 t.tif coarser.tif");
     writeRaster("t.tif", {.columns = 16385, .rows = 1, .heights = {}, .options = {"SPARSE_OK=TRUE"}});
     EXPECT_EQ(refusal(kDem), "s.toml:3: t.tif has 16385 x 1 cells; a scene's are at most 16384 a side");
 }

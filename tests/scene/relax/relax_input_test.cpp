@@ -73,14 +73,14 @@ TEST_F(RelaxInput, GridsThatCannotBeSandAreRefusedWithTheirLine) {
                       "bad.asc: cells of 1 x 1001 are too oblong; sides must be within 1 : 1000");
 }
 
-// A raster's pixels take 16 bytes each while they are read. If they were read first, the word would be refused.
+// The pixels of a text take 8 bytes each while they are read. If they were read first, the word would be refused.
 TEST_F(RelaxInput, ARasterThatDoesNotFitTheMemoryIsRefusedBeforeItsPixelsAreRead) {
     write("bad.asc", "ncols 16384\nnrows 16384\ncellsize 1\n1 word\n");
     for (const char* arguments : {"bad.asc out.asc --talus 30", "in.asc out.asc --talus 30 --bedrock bad.asc",
                                   "bad.asc out.ply --talus 30 --max-error 1"}) {
         const support::Ran ran = run(arguments, "ulimit -v 1000000; ");
         EXPECT_EQ(ran.status, 2) << arguments << ran.output;
-        EXPECT_NE(ran.output.find("bad.asc: 16384 x 16384 pixels of a raster need at least 4.0 GiB, and "),
+        EXPECT_NE(ran.output.find("bad.asc: 16384 x 16384 pixels of a raster need at least 2.0 GiB, and "),
                   std::string::npos)
             << arguments << ran.output;
     }
