@@ -68,6 +68,11 @@ GdalRaster::GdalRaster(const fs::path& file, const fs::path& inMemory)
         fail("cannot be read as a raster: " + withoutPath(session_.complaint(), fs::absolute(file)) +
              missingHeader(file));
     }
+    std::vector<fs::path> names = files();
+    if (!names.empty()) {
+        names[0] = file;  // messages name it as the user does
+    }
+    steady_ = SteadyFiles(names);
     chooseBand();
     checkClaims(*this);
     const auto bytes = static_cast<double>(RasterSize{columns(), rows(), numberSize()}.bytes());
@@ -183,7 +188,7 @@ bool GdalRaster::complete() const {
 }
 
 RasterHeights GdalRaster::pixels(const RasterCheck& check) const {
-    RasterHeights heights = numbersOf(*this, check);
+    RasterHeights heights = steady_.read([&] { return numbersOf(*this, check); });
     if (isScaled()) {
         heights.multiply(scale_, offset_);
     }

@@ -9,6 +9,7 @@
 
 #include "scene/gdal/gdal_session.hpp"
 #include "scene/import/raster_check.hpp"
+#include "scene/import/steady_files.hpp"
 
 namespace scene {
 
@@ -49,7 +50,7 @@ public:
     /// NaN.
     [[nodiscard]] bool complete() const;
     /// Returns the rows in the file's order, with scale and offset applied. A pixel without data is NaN.
-    /// Calls check.read().
+    /// Calls check.read(). Also throws if a file of the raster has another size afterwards than when it was opened.
     [[nodiscard]] RasterHeights pixels(const RasterCheck& check) const;
     [[noreturn]] void fail(const std::string& message) const;
     /// Throws base::InputError with GDAL's complaint about the pixels.
@@ -66,6 +67,7 @@ private:
     Dataset dataset_;
     GDALRasterBandH band_ = nullptr;
     double scale_ = 1, offset_ = 0;  // of the band
+    SteadyFiles steady_;             // the files of the raster as they were opened
 };
 
 }  // namespace scene

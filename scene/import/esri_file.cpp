@@ -20,6 +20,7 @@
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/no_data.hpp"
 #include "scene/import/prj_file.hpp"
+#include "scene/import/steady_files.hpp"
 
 namespace scene {
 namespace {
@@ -71,11 +72,13 @@ EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& chec
     }
     std::ifstream stream = opened(file);
     base::TextReader text(stream, file.string());
-    EsriGrid grid = readEsriText(text, check, mostHeightsIn(file));
-    if (stream.bad()) {
-        throw base::InputError(file.string() + ": cannot be read to its end; check the disk it lies on");
-    }
-    return grid;
+    return SteadyFiles({file}).read([&] {
+        EsriGrid grid = readEsriText(text, check, mostHeightsIn(file));
+        if (stream.bad()) {
+            throw base::InputError(file.string() + ": cannot be read to its end; check the disk it lies on");
+        }
+        return grid;
+    });
 }
 
 bool holdsEsriGrid(const std::filesystem::path& file) {

@@ -21,6 +21,7 @@
 #include "base/text.hpp"
 #include "sand/model/height_field.hpp"
 #include "scene/import/no_data.hpp"
+#include "scene/import/steady_files.hpp"
 
 namespace scene {
 namespace {
@@ -175,8 +176,9 @@ EsriGrid readGsf(const std::filesystem::path& file, const RasterCheck& check) {
         throw base::InputError(fmt::format("{}: {} x {} pixels are {} bytes, but {} follow the header", file.string(),
                                            grid.columns, grid.rows, cells * sizeof(float), behind));
     }
+    const SteadyFiles steady({file});
     check({grid.columns, grid.rows, NumberSize::floats, false});  // any number may be NaN
-    grid.heights = heightsFrom(stream, grid, check);
+    grid.heights = steady.read([&] { return heightsFrom(stream, grid, check); });
     grid.warnings = undeclaredNoData(grid, "if it does, mask these pixels in Gwyddion");
     return grid;
 }
