@@ -35,6 +35,7 @@ bool TextReader::readOn() {
     while (text_.size() == size && !ended_) {
         stream_->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
         const auto count = static_cast<std::size_t>(stream_->gcount());
+        bytesRead_ += count;
         if (count > 0) {
             decoder_.add(std::string_view(bytes).substr(0, count), text_);
         } else {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <istream>
 #include <string>
 #include <string_view>
@@ -28,6 +29,8 @@ public:
     /// Returns the number of the line that was read last, or in which the last word is. It is 1 before the first.
     [[nodiscard]] long line() const { return line_ < 1 ? 1 : line_; }
     [[nodiscard]] const std::string& file() const { return file_; }
+    /// Returns how many bytes were taken from the stream [byte]. Grows by a piece at a time.
+    [[nodiscard]] std::uint64_t bytesRead() const { return bytesRead_; }
     /// Throws InputError about line().
     [[noreturn]] void fail(const std::string& message) const;
 
@@ -41,6 +44,7 @@ private:
     std::size_t at_ = 0;    // position in text_, behind what was read
     long line_ = 0;         // line that was read last; words count from 1
     long linesBefore_ = 0;  // lines between the last word and a word that peekWord() has read
+    std::uint64_t bytesRead_ = 0;
     bool ended_ = false;
 };
 

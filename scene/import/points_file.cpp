@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -19,17 +21,21 @@
 #include "base/text_reader.hpp"
 #include "scene/import/metric_system.hpp"
 #include "scene/import/point_fields.hpp"
+#include "scene/import/steady_files.hpp"
 
 namespace scene {
 namespace {
 
 constexpr std::string_view kTransform = "gdaltransform -s_srs EPSG:4326 -t_srs EPSG:";
+constexpr double kLines = 0.8;  // part of the time that reading the lines takes; sorting the points takes the rest
 constexpr double kFlat = 1e-9;  // width / length below which a cloud counts as a line; doubles resolve little more
 
 /// Points with the lines that contain them.
 class Cloud {
 public:
-    explicit Cloud(const std::filesystem::path& file) : file_(file.string()), style_(file_) {
+    /// Calls `done` with the bytes that are read.
+    Cloud(const std::filesystem::path& file, const std::function<void(std::uint64_t bytes)>& done)
+        : file_(file.string()), style_(file_) {
         std::error_code ignored;
         std::ifstream stream(file, std::ios::binary);
         if (!stream || std::filesystem::is_directory(file, ignored) ||
@@ -37,11 +43,15 @@ public:
             throw base::InputError(file_ + ": cannot be read; check the path");
         }
         bool first = true;
+        std::uint64_t bytes = 0;
         base::TextReader lines(stream, file_);
         for (std::string_view text; lines.nextLine(text);) {
             const std::string_view content = base::trimmed(text.substr(0, text.find('#')));
             if (!content.empty()) {
                 add(pointFieldsOf(content), lines.line(), std::exchange(first, false));
+            }
+            if (std::exchange(bytes, lines.bytesRead()) != lines.bytesRead()) {
+                done(lines.bytesRead());
             }
         }
         if (stream.bad()) {
@@ -224,8 +234,22 @@ bool onOneLine(const Points& points) {
 
 }  // namespace
 
-Points readPoints(const std::filesystem::path& file) {
-    Points points = Cloud(file).distinct();
+Points readPoints(const std::filesystem::path& file, const std::function<void(double share)>& done) {
+    const auto report = [&](double share) {
+        if (done) {
+            done(share);
+        }
+    };
+    std::error_code unknown;  // of a pipe, for example
+    const auto size = static_cast<double>(std::filesystem::file_size(file, unknown));
+    Points points = SteadyFiles({file}).read([&] {
+        const Cloud cloud(file, [&](std::uint64_t bytes) {
+            report(unknown ? 0 : std::min(kLines * static_cast<double>(bytes) / size, kLines));
+        });
+        report(kLines);
+        return cloud.distinct();
+    });
+    report(1);
     if (points.size() < 3) {
         throw base::InputError(fmt::format("{}: holds {} points at different places, but terrain needs at least 3",
                                            file.string(), points.size()));

@@ -11,6 +11,7 @@
 #include "sand/replica.hpp"
 #include "sand/surface_factory.hpp"
 #include "scene/load/colour.hpp"
+#include "scene/load/progress.hpp"
 #include "scene/load/terrain.hpp"
 #include "scene/load/tin_settings.hpp"
 #include "scene/load/tin_table.hpp"
@@ -19,6 +20,7 @@
 namespace scene {
 namespace {
 
+constexpr double kTerrain = 0.5;  // part of the time of reading a TIN that its heights take; the mesh takes the rest
 constexpr int kTooCoarse = 4096;  // [unit]; below it, rest slopes are more than a percent too steep
 
 /// Reads the keys of [material]. The table may be missing, because dry sand is the default.
@@ -164,8 +166,9 @@ Scene loadScene(const std::filesystem::path& file, const SizeChecks& checks) {
     }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = toml.valueOr("rim", scene.rules.rim);
-    const bool settle = readTerrain(toml, scene, checks);
-    readTin(toml, scene);
+    const double terrain = toml.has("tin") ? kTerrain : 1;
+    const bool settle = readTerrain(toml, scene, {checks.raster, checks.field, partOf(checks.progress, 0, terrain)});
+    readTin(toml, scene, partOf(checks.progress, terrain, 1));
     readTool(toml, scene);
     readMaterial(toml, scene);
     requireSpacing(toml, scene);

@@ -20,7 +20,7 @@ struct SizeChecks {
     /// pixels are read. For other rasters, it is after the edges without data have been cut off. It is not called for a
     /// terrain of points, which has no field.
     std::function<void(const sand::FieldSize& size)> field{};
-    /// Receives the part of the terrain that has been read, 0 to 1. It must not throw.
+    /// Receives the part of the terrain that has been read or made, 0 to 1. It never goes back. It must not throw.
     std::function<void(double share)> progress{};
 };
 

@@ -17,13 +17,16 @@
 #include "scene/import/raster_file.hpp"
 #include "scene/import/raster_units.hpp"
 #include "scene/import/rock_fit.hpp"
+#include "scene/load/progress.hpp"
 #include "scene/load/terrain_source.hpp"
 #include "scene/load/tin_table.hpp"
 
 namespace scene {
 namespace {
 
-constexpr double kPixels = 0.6;  // part of the time of a raster that its pixels take; their heights take the rest
+// Parts of the time of reading.
+constexpr double kPixels = 0.6;  // pixels of a raster; making heights of them takes the rest
+constexpr double kAbove = 0.6;   // the sand, if there is rock in another file
 
 sand::HeightField levelField(const host::TomlTable& file, const SizeChecks& checks) {
     const host::TomlTable field = file.requiredTable("field");
@@ -107,13 +110,8 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
                              std::optional<EsriGrid>& survey, std::shared_ptr<sand::Ground>& ground,
                              const SizeChecks& checks) {
     AskedBeforeHeights asked(file, terrain, checks);
-    const auto report = [&checks](double share) {
-        if (checks.progress) {
-            checks.progress(share);
-        }
-    };
-    const TerrainSource source =
-        readSource(file, terrain, kind, RasterCheck(std::ref(asked), [&](double share) { report(kPixels * share); }));
+    TerrainSource source =
+        readSource(file, terrain, kind, RasterCheck(std::ref(asked), partOf(checks.progress, 0, kPixels)));
     scene.warnings.insert(scene.warnings.end(), source.warnings.begin(), source.warnings.end());
     if (source.statement) {
         scene.statements->push_back(*source.statement);
@@ -147,7 +145,7 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     const auto unitsOf = [&](double height) {
         return heightUnits(terrain, key, height - datum, field.unit(), adviceFor(height));
     };
-    layTerrain(grid, unitsOf, field, ground, [&](double share) { report(kPixels + (1 - kPixels) * share); });
+    layTerrain(grid, unitsOf, field, ground, partOf(checks.progress, kPixels, 1));
     return field;
 }
 
@@ -210,7 +208,7 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
                 checks.raster(size);
             }
         };
-        const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), check);
+        const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), {check, checks.progress});
         if (survey) {
             requireFit(*survey, rock);
         } else {
@@ -248,9 +246,12 @@ bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& ch
     std::shared_ptr<sand::Ground> ground;
     std::optional<EsriGrid> survey;
     scene.statements.emplace();
-    scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1, checks)
-                             : fromSource(file, terrain, kind - 2, scene, survey, ground, checks);
-    readBedrock(terrain, scene.terrain, checks, survey, ground, scene);
+    const double above = terrain.has("bedrock") ? kAbove : 1;
+    const SizeChecks ofSand{checks.raster, checks.field, partOf(checks.progress, 0, above)};
+    const SizeChecks ofRock{checks.raster, checks.field, partOf(checks.progress, above, 1)};
+    scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1, ofSand)
+                             : fromSource(file, terrain, kind - 2, scene, survey, ground, ofSand);
+    readBedrock(terrain, scene.terrain, ofRock, survey, ground, scene);
     const bool settle = terrain.flagOr("settle", false);
     terrain.finish();
     if (scene.tin == nullptr) {

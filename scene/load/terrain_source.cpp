@@ -133,7 +133,7 @@ TerrainSource readKind(const host::TomlTable& file, const host::TomlTable& terra
         case kGsf:
             return readScan(terrain, check);
         case kPoints:
-            return {.points = readPoints(fileOf(terrain))};
+            return {.points = readPoints(fileOf(terrain), [&check](double share) { check.read(share); })};
         default:
             return {.raster = readEsriGrid(fileOf(terrain), check)};
     }

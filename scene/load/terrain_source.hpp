@@ -34,8 +34,8 @@ struct TerrainSource {
 
 /// Reads the keys of one of sourceKinds() in [terrain]; `kind` is its index. For a function, also reads the number of
 /// cells from [field]. Calls `check` with the size of a raster, or of a function's field, before its heights are read
-/// or computed. Loads GDAL or muParser if the kind needs them. Throws base::InputError with file, line and key. An
-/// error in another file names that file.
+/// or computed, and check.read() meanwhile. Loads GDAL or muParser if the kind needs them. Throws base::InputError with
+/// file, line and key. An error in another file names that file.
 [[nodiscard]] TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
                                        const RasterCheck& check);
 

@@ -51,7 +51,8 @@ std::size_t distinctPlaces(const sand::tin::TinStart& start) {
 }
 
 /// Makes the TIN of points that are already on the lattice.
-sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& tin, const Scene& scene) {
+sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& tin, const Scene& scene,
+                           const Progress& done) {
     sand::tin::TinStart start = *scene.tin;
     const std::size_t places = distinctPlaces(start);
     if (places > std::size_t{sand::tin::kMostPlaces}) {
@@ -63,7 +64,7 @@ sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& t
     (void)tin.numberOr("cell", 1);  // already read by layOutPoints()
     start.settings = readTinSettings(tin, {scene.rules.columns, scene.rules.rows, scene.terrain.cellSize()}, places);
     tin.finish();
-    start = sand::tin::join(start, scene.rules.rim);
+    start = sand::tin::join(start, scene.rules.rim, done);
     const std::size_t most = tin.has("vertices") ? static_cast<std::size_t>(start.settings.mostVertices)
                                                  : std::size_t{sand::tin::kMostPlaces};
     if (start.places.size() > most) {
@@ -76,12 +77,12 @@ sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& t
 }
 
 /// Makes a TIN of the scene's height field.
-sand::tin::TinStart followed(const host::TomlTable& tin, Scene& scene) {
+sand::tin::TinStart followed(const host::TomlTable& tin, Scene& scene, const Progress& done) {
     const sand::HeightField& field = scene.terrain;
     const sand::tin::Settings settings = readTinSettings(tin, {field.columns(), field.rows(), field.cellSize()});
     tin.finish();
     try {
-        sand::tin::Followed made = sand::tin::follow(field, scene.ground.get(), settings, scene.rules.rim);
+        sand::tin::Followed made = sand::tin::follow(field, scene.ground.get(), settings, scene.rules.rim, done);
         if (made.maxError > settings.maxError) {
             const double asked = tin.has("max_error") ? tin.number("max_error") : settings.maxError * field.unit();
             scene.warnings.push_back(fmt::format(
@@ -182,7 +183,7 @@ sand::HeightField layOutPoints(const host::TomlTable& file, const host::TomlTabl
     return one;
 }
 
-void readTin(const host::TomlTable& file, Scene& scene) {
+void readTin(const host::TomlTable& file, Scene& scene, const Progress& done) {
     const auto tin = file.table("tin");
     if (!tin) {
         return;
@@ -191,7 +192,7 @@ void readTin(const host::TomlTable& file, Scene& scene) {
         file.fail("tin", "a TIN has no rock; leave out [tin], or 'layer' and 'bedrock'");
     }
     if (scene.tin != nullptr) {
-        scene.beginAs(joined(file, *tin, scene));
+        scene.beginAs(joined(file, *tin, scene, done));
         return;
     }
     const sand::HeightField& field = scene.terrain;
@@ -202,7 +203,7 @@ void readTin(const host::TomlTable& file, Scene& scene) {
         }
     }
     requireRange(file, highest, field.columns(), field.rows(), field.unit());
-    sand::tin::TinStart start = followed(*tin, scene);
+    sand::tin::TinStart start = followed(*tin, scene, done);
     scene.ground = nullptr;  // the ground's walls are holes of the TIN
     scene.rules.ground = 0;
     scene.beginAs(std::move(start));

@@ -4,6 +4,7 @@
 
 #include "host/toml_table.hpp"
 #include "scene/import/points_file.hpp"
+#include "scene/load/progress.hpp"
 #include "scene/model/scene.hpp"
 
 namespace scene {
@@ -16,6 +17,8 @@ namespace scene {
 
 /// Reads [tin] of a scene file, and makes a TIN of the scene's height field or points. Does nothing without that table.
 /// Throws base::InputError with file, line and key.
-void readTin(const host::TomlTable& file, Scene& scene);
+///
+/// @param done  Called with the part of the work that is done, 0 to 1. It may be empty.
+void readTin(const host::TomlTable& file, Scene& scene, const Progress& done = {});
 
 }  // namespace scene

@@ -54,7 +54,7 @@ Vertex Mesh::insert(LatticePoint place) {
     return triangulation_->insert(place);
 }
 
-std::vector<Vertex> Mesh::insert(std::span<const LatticePoint> places) {
+std::vector<Vertex> Mesh::insert(std::span<const LatticePoint> places, const std::function<void(double share)>& done) {
     std::for_each(places.begin(), places.end(), [this](const LatticePoint& place) { requireInside(place); });
     const auto [order, first] = spatialOrder(places);
     // First find the vertices that exist already, then give out numbers in the order of `places`, then change the
@@ -74,8 +74,12 @@ std::vector<Vertex> Mesh::insert(std::span<const LatticePoint> places) {
             numbers[i] = triangulation_->takeNumber();
         }
     }
-    for (const std::uint32_t index : order) {
-        triangulation_->insert(places[index], numbers[index]);
+    constexpr std::size_t kPlacesPerReport = 4096;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        triangulation_->insert(places[order[i]], numbers[order[i]]);
+        if (done && i % kPlacesPerReport == 0) {
+            done(static_cast<double>(i) / static_cast<double>(order.size()));
+        }
     }
     return numbers;
 }

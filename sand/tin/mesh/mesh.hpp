@@ -3,6 +3,7 @@
 
 #include <array>
 #include <compare>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -41,8 +42,10 @@ public:
     /// edge; both halves are constrained. Throws std::invalid_argument if `place` lies outside the field.
     Vertex insert(LatticePoint place);
     /// Returns the vertices at many places, as if they were inserted one after the other, but in less time. The
-    /// vertices get their numbers in the order of `places`.
-    std::vector<Vertex> insert(std::span<const LatticePoint> places);
+    /// vertices get their numbers in the order of `places`. `done` is called now and then with the part of the places
+    /// that is inserted, 0 to 1. It may be empty, and has no effect on the mesh.
+    std::vector<Vertex> insert(std::span<const LatticePoint> places,
+                               const std::function<void(double share)>& done = {});
     /// Reserves memory for `vertices` vertices in all, so that no insertion up to this number moves the mesh in
     /// memory.
     void reserve(std::size_t vertices);

@@ -11,6 +11,7 @@ namespace sand::tin {
 namespace {
 
 constexpr std::int64_t kNone = -1;
+constexpr std::size_t kVerticesPerReport = 256;  // [vertex]
 
 std::int64_t floorDivided(std::int64_t value, std::int64_t by /* positive */) {
     return value >= 0 ? value / by : -((-value + by - 1) / by);
@@ -208,7 +209,7 @@ std::int64_t sampleAt(const Raster& raster, const LatticePoint& place) {
 }  // namespace
 
 Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster, const SimplifyGoal& goal,
-                    const Border& given) {
+                    const Border& given, const std::function<void(double share)>& done) {
     check(width, depth, raster);
     if (goal.maxVertices < 4) {
         throw std::invalid_argument("fewer than 4 vertices: a field has 4 corners");
@@ -251,6 +252,9 @@ Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster
         errors.use(worst.sample);
         mesh.insert(result.places.back());
         errors.measure(mesh.takeChange().triangles);
+        if (done && result.places.size() % kVerticesPerReport == 0) {
+            done(static_cast<double>(result.places.size()) / goal.maxVertices);
+        }
     }
     errors.report(result);
     return result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -51,8 +52,11 @@ struct Simplified {
 ///
 /// @param given  Points that are inserted after the corners and before all samples, and edges that are constrained.
 ///               A point at a sample must have the height of that sample.
+/// @param done   Called now and then with the vertices as a part of goal.maxVertices, 0 to 1. It may be empty, and has
+///               no effect on the result.
 [[nodiscard]] Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster,
-                                  const SimplifyGoal& goal, const Border& given = {});
+                                  const SimplifyGoal& goal, const Border& given = {},
+                                  const std::function<void(double share)>& done = {});
 
 /// Returns the surface through these points with its vertical errors, as simplify() reports them, for comparison.
 [[nodiscard]] Simplified measured(std::int32_t width, std::int32_t depth, const Raster& raster,

@@ -18,6 +18,7 @@ namespace sand::tin {
 namespace {
 
 constexpr int kCorners = 4;
+constexpr std::size_t kPlacesPerReport = 4096;               // [place]
 constexpr std::int32_t kUsualWidest = 16 * kLatticePerCell;  // distance of points on the rim if settings give none
 constexpr double kAnyError = 4.0 * kMaxHeight;               // more than any difference of two heights [unit]
 
@@ -26,8 +27,39 @@ std::int32_t nearestHeight(double height) {
         std::clamp(std::floor(height + 0.5), -static_cast<double>(kMaxHeight), static_cast<double>(kMaxHeight)));
 }
 
-std::int32_t meanHeight(const TinStart& start) {
-    const VertexSand layer = layerOf(start);
+/// Receives the part of the work that is done, 0 to 1. It may be empty.
+using Done = std::function<void(double share)>;
+
+// Parts of the time of follow() and join(). The rest is the triangulation from which the mean height follows.
+constexpr double kBorder = 0.1, kChosen = 0.9;  // the border, and then the choice of vertices
+constexpr double kNumbered = 0.4;               // one number for each place
+
+Done partOf(const Done& whole, double from, double to) {
+    return [&whole, from, to](double share) {
+        if (whole) {
+            whole(from + (to - from) * share);
+        }
+    };
+}
+
+VertexSand layerOf(const TinStart& start, const Done& done) {
+    Mesh mesh(start.width, start.depth, start.holes);
+    mesh.insert(start.places, done);  // the corners exist already, as the first four vertices
+    for (const auto& [a, b] : start.constraints) {
+        mesh.constrain(a, b);
+    }
+    if (!mesh.hasOutline()) {  // possible if the start was received
+        throw base::FormatError("a TIN with holes that have no outline");
+    }
+    VertexSand layer(std::move(mesh));
+    for (std::size_t i = 0; i < start.heights.size(); ++i) {
+        layer.setHeight(static_cast<Vertex>(i), start.heights[i]);
+    }
+    return layer;
+}
+
+std::int32_t meanHeight(const TinStart& start, const Done& done) {
+    const VertexSand layer = layerOf(start, done);
     return nearestHeight(static_cast<double>(layer.volume()) / static_cast<double>(layer.ground()));
 }
 
@@ -119,7 +151,7 @@ std::int32_t rimSpacing(const Settings& settings) {
 
 /// Chooses the vertices that rim, holes, heights and settings.widest require, and adds them to `start`. Returns the
 /// largest remaining error [unit].
-double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStart& start) {
+double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStart& start, const Done& done) {
     std::vector<double> heights;
     heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
     for (int row = 0; row < field.rows(); ++row) {
@@ -147,8 +179,11 @@ double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStar
     }
     // Add them before anything is chosen, because each point changes the triangles around it and their errors.
     addLattice(field, start.holes.get(), settings, given);
-    const Simplified chosen = simplify(start.width, start.depth, raster,
-                                       {static_cast<double>(settings.maxError), settings.mostVertices, false}, given);
+    const Done choose = partOf(done, kBorder, kChosen);
+    choose(0);
+    const Simplified chosen =
+        simplify(start.width, start.depth, raster,
+                 {static_cast<double>(settings.maxError), settings.mostVertices, false}, given, choose);
     start.constraints = given.edges;
     start.places = chosen.places;
     for (const double height : chosen.heights) {
@@ -211,23 +246,9 @@ void divideRim(Rim rim, TinStart& start) {
 
 }  // namespace
 
-VertexSand layerOf(const TinStart& start) {
-    Mesh mesh(start.width, start.depth, start.holes);
-    mesh.insert(start.places);  // the corners exist already, as the first four vertices
-    for (const auto& [a, b] : start.constraints) {
-        mesh.constrain(a, b);
-    }
-    if (!mesh.hasOutline()) {  // possible if the start was received
-        throw base::FormatError("a TIN with holes that have no outline");
-    }
-    VertexSand layer(std::move(mesh));
-    for (std::size_t i = 0; i < start.heights.size(); ++i) {
-        layer.setHeight(static_cast<Vertex>(i), start.heights[i]);
-    }
-    return layer;
-}
+VertexSand layerOf(const TinStart& start) { return layerOf(start, {}); }
 
-Followed follow(const HeightField& field, const Ground* walls, const Settings& settings, Rim rim) {
+Followed follow(const HeightField& field, const Ground* walls, const Settings& settings, Rim rim, const Done& done) {
     Followed followed;
     TinStart& start = followed.start;
     start.width = field.columns() * kLatticePerCell;
@@ -240,13 +261,13 @@ Followed follow(const HeightField& field, const Ground* walls, const Settings& s
         start.heights.assign(start.places.size(), field.height(0, 0));
         divideRim(rim, start);
     } else {
-        followed.maxError = addChosen(field, walls, rim, start);
+        followed.maxError = addChosen(field, walls, rim, start, done);
     }
-    start.meanHeight = meanHeight(start);
+    start.meanHeight = meanHeight(start, partOf(done, kChosen, 1));
     return followed;
 }
 
-TinStart join(const TinStart& given, Rim rim) {
+TinStart join(const TinStart& given, Rim rim, const Done& done) {
     TinStart start;
     start.width = given.width;
     start.depth = given.depth;
@@ -269,6 +290,9 @@ TinStart join(const TinStart& given, Rim rim) {
             start.heights.push_back(given.heights[i]);
         }
         numberOf.push_back(found->second);
+        if (done && i % kPlacesPerReport == 0) {
+            done(kNumbered * static_cast<double>(i) / static_cast<double>(given.places.size()));
+        }
     }
     for (const auto& [a, b] : given.constraints) {
         const auto ends = std::minmax(numberOf[static_cast<std::size_t>(a)], numberOf[static_cast<std::size_t>(b)]);
@@ -277,7 +301,7 @@ TinStart join(const TinStart& given, Rim rim) {
         }
     }
     divideRim(rim, start);
-    start.meanHeight = meanHeight(start);
+    start.meanHeight = meanHeight(start, partOf(done, kNumbered, 1));
     return start;
 }
 
@@ -300,7 +324,7 @@ TinStart startOf(const VertexSand& layer, const Settings& settings) {
         start.constraints.emplace_back(
             std::minmax(numberOf[static_cast<std::size_t>(a)], numberOf[static_cast<std::size_t>(b)]));
     }
-    start.meanHeight = meanHeight(start);
+    start.meanHeight = meanHeight(start, {});
     return start;
 }
 

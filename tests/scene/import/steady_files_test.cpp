@@ -9,6 +9,7 @@
 #include "scene/import/esri_file.hpp"
 #include "scene/import/gsf_file.hpp"
 #include "scene/import/importer.hpp"
+#include "scene/import/points_file.hpp"
 #include "scene/import/raster_file.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 #include "tests/support/refusal.hpp"
@@ -98,6 +99,18 @@ TEST_F(SteadyFile, ATextThatShrinksIsOneLineEvenIfItHasAllItsNumbers) {
         EXPECT_EQ(test::refusalOf([&] { (void)scene::readEsriGrid(path("t.asc"), resizing("t.asc", bytes)); }),
                   changed("t.asc", text.size(), bytes));
     }
+}
+
+TEST_F(SteadyFile, PointsThatShrinkAreOneLine) {
+    std::string points;
+    for (int i = 0; i < kFileSide * kFileSide; ++i) {
+        points += fmt::format("{},{},1\n", i % kFileSide, i / kFileSide);
+    }
+    write("p.csv", points);
+    const std::uintmax_t bytes = points.size() / 2 + 1;
+    const auto shrink = [&](double /*share*/) { std::filesystem::resize_file(path("p.csv"), bytes); };
+    EXPECT_EQ(test::refusalOf([&] { (void)scene::readPoints(path("p.csv"), shrink); }),
+              changed("p.csv", points.size(), bytes));
 }
 
 TEST_F(SteadyFile, AFileThatIsGoneWhileItIsReadIsReadToItsEnd) {
