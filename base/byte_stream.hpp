@@ -25,9 +25,34 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// Takes the bytes of a ByteWriter in order, for example into a file.
+class ByteSink {
+public:
+    ByteSink() = default;
+    ByteSink(const ByteSink&) = delete;
+    ByteSink& operator=(const ByteSink&) = delete;
+    virtual ~ByteSink() = default;
+    virtual void write(std::span<const std::uint8_t> bytes) = 0;
+    /// Replaces bytes that were written `place` bytes after the first one.
+    virtual void overwrite(std::uint64_t place, std::span<const std::uint8_t> bytes) = 0;
+};
+
 /// Appends little-endian numbers to bytes. Link, frame messages and journal consist of such bytes.
 class ByteWriter {
 public:
+    ByteWriter() = default;
+    /// Passes the bytes to `sink` in pieces, so that it holds only kPiece bytes and what was appended last. `sink` must
+    /// outlive the writer. Call flush() at the end, and neither bytes() nor take().
+    explicit ByteWriter(ByteSink& sink) : sink_(&sink) {}
+    static constexpr std::size_t kPiece = std::size_t{1} << 20;  // [byte]
+
+    /// Passes all bytes to the sink.
+    void flush() {
+        sink_->write(bytes_);
+        passed_ += bytes_.size();
+        bytes_.clear();
+    }
+
     template <class Number>
     requires std::is_arithmetic_v<Number>
     void put(Number value) { append(&value, sizeof value); }
@@ -38,13 +63,24 @@ public:
         putBytes(bytes);
     }
     /// Begins a block whose length endBlock() writes. Returns its place. All bytes up to endBlock() belong to it.
-    [[nodiscard]] std::size_t beginBlock() {
+    [[nodiscard]] std::uint64_t beginBlock() {
         put(std::uint32_t{0});
-        return bytes_.size();
+        return passed_ + bytes_.size();
     }
-    void endBlock(std::size_t place) {
-        const auto length = static_cast<std::uint32_t>(bytes_.size() - place);
-        std::memcpy(bytes_.data() + place - sizeof length, &length, sizeof length);
+    /// Throws std::length_error if the block has 2^32 bytes or more.
+    void endBlock(std::uint64_t place) {
+        const std::uint64_t size = passed_ + bytes_.size() - place;
+        const auto length = static_cast<std::uint32_t>(size);
+        if (length != size) {
+            throw std::length_error("a block of " + std::to_string(size) + " bytes, which is too long");
+        }
+        if (const std::uint64_t at = place - sizeof length; at >= passed_) {
+            std::memcpy(bytes_.data() + (at - passed_), &length, sizeof length);
+        } else {
+            std::uint8_t bytes[sizeof length];
+            std::memcpy(bytes, &length, sizeof length);
+            sink_->overwrite(at, bytes);
+        }
     }
     void putText(std::string_view text) { putBlock({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); }
     /// Appends a number with 7 bits in each byte, lowest bits first. Small numbers take few bytes.
@@ -70,9 +106,14 @@ private:
         if (size > 0) {
             std::memcpy(bytes_.data() + end, from, size);
         }
+        if (sink_ != nullptr && bytes_.size() >= kPiece) {
+            flush();
+        }
     }
 
     Bytes bytes_;
+    ByteSink* sink_ = nullptr;  // null: bytes_ has all bytes
+    std::uint64_t passed_ = 0;  // bytes that the sink has
 };
 
 /// Reads what ByteWriter wrote. Throws FormatError if the bytes end before a value does.

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "host/regular_file.hpp"
@@ -74,6 +75,22 @@ WholeFile::WholeFile(const std::filesystem::path& path, Other other) : path_(pat
 }
 
 WholeFile::~WholeFile() { removePart(); }
+
+void WholeFile::readBack(const std::function<void(std::span<const std::uint8_t>)>& take) {
+    constexpr std::size_t kPiece = std::size_t{1} << 20;  // [byte]
+    stream_.flush();
+    std::ifstream written(fmt::format("/proc/self/fd/{}", descriptor_), std::ios::binary);
+    if (!stream_.good() || !written) {
+        fail();
+    }
+    for (std::vector<std::uint8_t> piece(kPiece); written;) {
+        written.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+        take(std::span(piece).first(static_cast<std::size_t>(written.gcount())));
+    }
+    if (!written.eof()) {
+        fail();
+    }
+}
 
 void WholeFile::keepSynced() {
     stream_.flush();

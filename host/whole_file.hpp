@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <span>
 #include <string>
 
 namespace host {
@@ -26,6 +29,9 @@ public:
     WholeFile& operator=(const WholeFile&) = delete;
 
     [[nodiscard]] std::ostream& stream() { return stream_; }
+    /// Calls `take` with all that was written so far, piece by piece. Only for a path that is a regular file or is not
+    /// there yet. Throws base::InputError if it cannot be read.
+    void readBack(const std::function<void(std::span<const std::uint8_t>)>& take);
     void keep();
     /// Does what keep() does, and returns when the file is on disk, where it survives a power loss.
     void keepSynced();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 #include "sand/model/rules.hpp"
 
@@ -55,6 +56,24 @@ FileOrigin readOrigin(const FileKind& kind, std::string_view release, base::Byte
     }
     return origin;
 }
+
+struct FileSum::State {
+    std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> sum{XXH3_createState(), XXH3_freeState};
+};
+
+FileSum::FileSum() : state_(std::make_unique<State>()) {
+    if (state_->sum == nullptr || XXH3_64bits_reset(state_->sum.get()) != XXH_OK) {
+        throw std::bad_alloc();
+    }
+}
+
+FileSum::~FileSum() = default;
+
+void FileSum::add(std::span<const std::uint8_t> piece) {
+    (void)XXH3_64bits_update(state_->sum.get(), piece.data(), piece.size());
+}
+
+std::uint64_t FileSum::value() const { return XXH3_64bits_digest(state_->sum.get()); }
 
 std::uint64_t fileSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 

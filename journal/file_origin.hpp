@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,6 +52,20 @@ void writeOrigin(const FileKind& kind, std::string_view release, base::ByteWrite
 
 /// Returns the checksum of the bytes of a checkpoint or of saved sand.
 [[nodiscard]] std::uint64_t fileSum(std::span<const std::uint8_t> bytes);
+/// The same checksum of bytes that come in pieces.
+class FileSum {
+public:
+    FileSum();
+    ~FileSum();
+    FileSum(const FileSum&) = delete;
+    FileSum& operator=(const FileSum&) = delete;
+    void add(std::span<const std::uint8_t> piece);
+    [[nodiscard]] std::uint64_t value() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 /// Returns what is between the origin and the checksum of a `file`. `reader` has read the origin. Throws
 /// base::FormatError if the checksum is wrong.
 [[nodiscard]] std::span<const std::uint8_t> contentOf(std::span<const std::uint8_t> file,

@@ -127,6 +127,7 @@ void SessionRecord::reportRecovery(std::uint64_t frame, const MasterSand& sand) 
 
 void SessionRecord::finish(const MasterSand& sand, bool agreed) {
     if (journal_ && agreed) {
+        journal_->copyRest(sand.replica());
         journal_->finish(endOf(sand));
     }
 }

@@ -332,20 +332,32 @@ std::uint64_t Replica::movementDigest() const {
 
 StateHead Replica::head() const { return {stepNumber_, probe_, heading_, engaged_, owed_, rules_.tuning}; }
 
-StateCopy Replica::copyState() const {
+StateCopy Replica::copyState() const { return stateOf({copySand(), surface_->kept()}); }
+
+StateCopy Replica::beginCopy() const { return stateOf(surface_->beginCopy()); }
+
+StateCopy Replica::stateOf(Surface::Copies copies) const {
     base::ByteWriter movement;
     if (surface_->movement() != nullptr) {
         surface_->movement()->encode(movement);
     }
-    return {base::encoded(head()), movement.take(), surface_->kept(), copySand()};
+    return {base::encoded(head()), movement.take(), std::move(copies.kept), std::move(copies.sand)};
+}
+
+void StateCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const {
+    writer.putBytes(head);
+    writer.putBlock(movement);
+    const std::uint64_t stroke = writer.beginBlock();
+    if (beforeStroke) {
+        beforeStroke->encodeInto(writer, between);
+    }
+    writer.endBlock(stroke);
+    sand->encodeInto(writer, between);
 }
 
 base::Bytes StateCopy::encode(const std::function<void()>& between) const {
     base::ByteWriter writer;
-    writer.putBytes(head);
-    writer.putBlock(movement);
-    writer.putBlock(beforeStroke ? beforeStroke->encode(between) : base::Bytes());
-    writer.putBytes(sand->encode(between));
+    encodeInto(writer, between);
     return writer.take();
 }
 

@@ -57,8 +57,15 @@ struct StateCopy {
     std::shared_ptr<const SurfaceCopy> beforeStroke;  // sand that an undo restores; null if there is none
     std::shared_ptr<const SurfaceCopy> sand;
 
-    /// Returns the state as compressed bytes for Replica::decodeState(). Calls `between` as SurfaceCopy::encode() does.
+    /// Writes the state as compressed bytes for Replica::decodeState(). Calls `between` as SurfaceCopy::encodeInto()
+    /// does. Requires complete().
+    void encodeInto(base::ByteWriter& writer, const std::function<void()>& between = {}) const;
+    /// Returns what encodeInto() writes.
     [[nodiscard]] base::Bytes encode(const std::function<void()>& between = {}) const;
+    /// Returns whether the copy has all sand. Call it in the thread of the replica.
+    [[nodiscard]] bool complete() const {
+        return sand->complete() && (beforeStroke == nullptr || beforeStroke->complete());
+    }
 };
 
 /// One program's copy of the sand, and apply(), the function through which each step changes it.
@@ -181,6 +188,13 @@ public:
     /// Returns the function that decodes sand for this field. It stays valid after the replica is gone.
     [[nodiscard]] SurfaceReader sandReader() const { return surface_->reader(); }
     [[nodiscard]] StateCopy copyState() const;
+    /// Begins a copy of the whole state of this moment, which takes no longer for a large field. Steps copy the sand
+    /// that they change, and continueCopy() copies the other sand. Another thread may have the copy when it is
+    /// complete. The replica completes only the copy that was begun last.
+    [[nodiscard]] StateCopy beginCopy() const;
+    /// Copies at least `cells` further cells, or all that are left. Returns false if no begun copy lacks
+    /// any. A copy of this replica, or another one in its place, has begun none.
+    bool continueCopy(std::int64_t cells) const { return surface_->continueCopy(cells); }
     /// Returns the whole state as compressed bytes, from which another replica can continue.
     [[nodiscard]] base::Bytes encodeState() const { return copyState().encode(); }
     /// Replaces the whole state by what encodeState() wrote. Throws base::FormatError if the bytes are not a state of
@@ -203,6 +217,7 @@ private:
         Heading heading;
     };
     [[nodiscard]] StateHead head() const;
+    [[nodiscard]] StateCopy stateOf(Surface::Copies copies) const;
     /// Returns whether `step` moves a tool that is in the sand before the step or after it.
     [[nodiscard]] bool movesTool(const Step& step) const;
     /// Returns whether `step` moves a tool that is in the sand, or gives it another shape.

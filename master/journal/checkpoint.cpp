@@ -34,6 +34,68 @@ std::optional<std::uint64_t> stepOf(const std::string& name) {
     return named ? std::optional(step) : std::nullopt;
 }
 
+/// Writes bytes to a file.
+class FileSink final : public base::ByteSink {
+public:
+    explicit FileSink(host::WholeFile& file) : file_(file) {}
+    void write(std::span<const std::uint8_t> bytes) override {
+        file_.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    }
+    void overwrite(std::uint64_t place, std::span<const std::uint8_t> bytes) override {
+        file_.stream().seekp(static_cast<std::streamoff>(place));
+        write(bytes);
+        file_.stream().seekp(0, std::ios::end);
+    }
+
+private:
+    host::WholeFile& file_;
+};
+
+/// Writes the bytes of Checkpoint::encode(), with the state that `putState` writes.
+void putInto(host::WholeFile& file, const Checkpoint& checkpoint,
+             const std::function<void(base::ByteWriter&)>& putState) {
+    FileSink sink(file);
+    base::ByteWriter writer(sink);
+    journal::writeOrigin(kCheckpointKind, host::release(), writer);
+    base::Bytes head = base::encoded(Checkpoint{checkpoint.session,
+                                                checkpoint.buildId,
+                                                checkpoint.sceneDigest,
+                                                checkpoint.step,
+                                                checkpoint.frame,
+                                                checkpoint.epoch,
+                                                checkpoint.stateHash,
+                                                {}});
+    head.resize(head.size() - sizeof(std::uint32_t));  // without the length of the state, which is the last member
+    writer.putBytes(head);
+    const std::uint64_t place = writer.beginBlock();
+    putState(writer);
+    writer.endBlock(place);
+    writer.flush();
+    // Lengths come before what they are the lengths of, so the checksum can be computed only now.
+    journal::FileSum sum;
+    file.readBack([&sum](std::span<const std::uint8_t> piece) { sum.add(piece); });
+    writer.put(sum.value());
+    writer.flush();
+}
+
+void write(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept,
+           const std::function<void(base::ByteWriter&)>& putState) {
+    try {
+        host::makeFolders(folderOf(journal));
+    } catch (const fs::filesystem_error& error) {
+        throw base::InputError(
+            fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.code().message()));
+    }
+    host::WholeFile file(checkpointFile(journal, checkpoint.step), host::WholeFile::Other::refused);
+    putInto(file, checkpoint, putState);
+    file.keepSynced();
+    const std::vector<std::uint64_t> steps = checkpointsOf(journal);
+    for (std::size_t i = kept; i < steps.size(); ++i) {
+        std::error_code none;  // ignored, because an old checkpoint does no harm
+        fs::remove(checkpointFile(journal, steps[i]), none);
+    }
+}
+
 }  // namespace
 
 base::Bytes Checkpoint::encode() const { return journal::encodeFile(kCheckpointKind, host::release(), *this); }
@@ -71,30 +133,13 @@ void forgetHalves(const fs::path& journal) {
     }
 }
 
-void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept,
-                     const std::function<void()>& between) {
-    try {
-        host::makeFolders(folderOf(journal));
-    } catch (const fs::filesystem_error& error) {
-        throw base::InputError(
-            fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.code().message()));
-    }
-    const base::Bytes bytes = checkpoint.encode();
-    host::WholeFile file(checkpointFile(journal, checkpoint.step), host::WholeFile::Other::refused);
-    constexpr std::size_t kPiece = 1 << 22;
-    for (std::size_t done = 0; done < bytes.size(); done += kPiece) {
-        file.stream().write(reinterpret_cast<const char*>(bytes.data()) + done,
-                            static_cast<std::streamsize>(std::min(kPiece, bytes.size() - done)));
-        if (between) {
-            between();
-        }
-    }
-    file.keepSynced();
-    const std::vector<std::uint64_t> steps = checkpointsOf(journal);
-    for (std::size_t i = kept; i < steps.size(); ++i) {
-        std::error_code none;  // ignored, because an old checkpoint does no harm
-        fs::remove(checkpointFile(journal, steps[i]), none);
-    }
+void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept) {
+    write(journal, checkpoint, kept, [&checkpoint](base::ByteWriter& writer) { writer.putBytes(checkpoint.state); });
+}
+
+void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, const sand::StateCopy& copy,
+                     std::size_t kept, const std::function<void()>& between) {
+    write(journal, checkpoint, kept, [&copy, &between](base::ByteWriter& writer) { copy.encodeInto(writer, between); });
 }
 
 Checkpoint readCheckpoint(const fs::path& file) {

@@ -9,6 +9,7 @@
 
 #include "base/field_forms.hpp"
 #include "journal/file_origin.hpp"
+#include "sand/replica.hpp"
 
 namespace master {
 
@@ -49,8 +50,12 @@ struct Checkpoint {
 void forgetHalves(const std::filesystem::path& journal);
 /// Writes a checkpoint, which is whole and on disk when the function returns. Then removes all but the newest `kept`
 /// checkpoints. Throws base::InputError if the disk refuses it. Any thread, but only one at a time.
-void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, std::size_t kept,
-                     const std::function<void()>& between = {});
+void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, std::size_t kept);
+/// Writes `checkpoint` with the state `copy` instead of its own. Needs memory for a stripe of the sand, because it
+/// writes the file while it compresses the state. `copy` must be complete. `between` is called after each stripe; it
+/// may throw, and no checkpoint is then written.
+void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, const sand::StateCopy& copy,
+                     std::size_t kept, const std::function<void()>& between);
 /// Reads a file of checkpointFile(). Throws base::FormatError if the file or its folder is a link, or the file cannot
 /// be read or is damaged.
 [[nodiscard]] Checkpoint readCheckpoint(const std::filesystem::path& file);

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -16,7 +17,6 @@
 #include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "host/whole_file.hpp"
-#include "master/journal/checkpoint.hpp"
 #include "master/journal/file_parts.hpp"
 #include "sand/model/grid_codec.hpp"
 #include "scene/model/scene.hpp"
@@ -29,31 +29,12 @@ constexpr const char* kBeyond = ".beyond";            // behind the name of a ch
 constexpr std::size_t kCheckpointsKept = 3;           // the newest two may be damaged
 constexpr std::chrono::milliseconds kHeldRanks{500};  // the most that the ranks wait for a checkpoint of the end
 
+constexpr double kGridsOfState = 6;  // at most: heights and two fluxes, now and before the stroke
+
 bool hasSetAside(const std::filesystem::path& checkpoints) {
     std::error_code none;
     const std::filesystem::directory_iterator files(checkpoints, none);
     return std::any_of(begin(files), end(files), [](const auto& file) { return file.path().extension() == kBeyond; });
-}
-
-/// Compresses and writes a copy of the sand. `stripes` is about the number of pieces in which it is compressed.
-void writeCopy(std::shared_ptr<const sand::StateCopy> copy, Checkpoint checkpoint, const std::filesystem::path& journal,
-               double stripes, UnfinishedCheckpoint::Work& work) {
-    constexpr double kCompressing = 0.7;  // part of the time
-    constexpr double kPiece = 1 << 22;    // [byte] that writeCheckpoint() writes at once
-    const double compressed = stripes * (copy->beforeStroke != nullptr ? 2 : 1);
-    double done = 0;
-    checkpoint.state = copy->encode([&] {
-        work.setDone(kCompressing * std::min(1.0, ++done / compressed));
-        work.requireWanted();
-    });
-    copy.reset();
-    work.requireWanted();
-    const double pieces = std::ceil(static_cast<double>(checkpoint.state.size()) / kPiece);
-    done = 0;
-    writeCheckpoint(journal, checkpoint, kCheckpointsKept, [&] {
-        work.setDone(kCompressing + (1 - kCompressing) * std::min(1.0, ++done / pieces));
-        work.requireWanted();
-    });
 }
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -66,7 +47,7 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
       journal_(out / "session.journal"),
       buildId_(std::move(buildId)),
       sceneDigest_(scene.rules.digest()),
-      stripes_(std::ceil(static_cast<double>(scene.rules.columns) * scene.rules.rows / sand::kStripe)),
+      stripes_(kGridsOfState * std::ceil(static_cast<double>(scene.rules.columns) * scene.rules.rows / sand::kStripe)),
       lastCheckpoint_(now()) {
     if (options_.policy == JournalPolicy::off) {
         requireNoWriter();
@@ -266,19 +247,51 @@ void JournalKeeper::takeCheckpoint(bool wait) {
 
 void JournalKeeper::shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
     takeCheckpoint(false);
+    if (begun_) {
+        continueCopy(replica, kCopiedCells);
+        return;
+    }
     const bool due = options_.checkpointSeconds > 0 && now() - lastCheckpoint_ >= options_.checkpointSeconds;
     if (!writer_ || !due || doubted_ || checkpoint_ || replica.stepNumber() == checkpointStep_) {
         return;
     }
     lastCheckpoint_ = now();
     checkpointStep_ = replica.stepNumber();
-    auto copy = std::make_shared<const sand::StateCopy>(replica.copyState());
-    copyMs_.push_back(1e3 * (now() - lastCheckpoint_));
-    Checkpoint checkpoint{writer_->session(), buildId_, sceneDigest_, checkpointStep_, frame, epoch, hash, {}};
-    checkpoint_.emplace(checkpointStep_, [copy = std::move(copy), checkpoint, journal = journal_,
-                                          stripes = stripes_](UnfinishedCheckpoint::Work& work) mutable {
-        writeCopy(std::move(copy), std::move(checkpoint), journal, stripes, work);
+    copyMs_.push_back(0);
+    begun_.emplace(Begun{{writer_->session(), buildId_, sceneDigest_, checkpointStep_, frame, epoch, hash, {}},
+                         replica.beginCopy()});
+    continueCopy(replica, kCopiedCells);
+    copyMs_.back() = 1e3 * (now() - lastCheckpoint_);
+}
+
+/// Copies `cells` cells of a begun checkpoint, and lets a thread write it when its copy is complete.
+void JournalKeeper::continueCopy(const sand::Replica& replica, std::int64_t cells) {
+    const double begin = now();
+    const bool copied = !begun_->copy.complete() && replica.continueCopy(cells);
+    if (begun_->copy.complete()) {
+        writeInBackground();
+    } else if (!copied) {
+        begun_.reset();  // another replica has taken the place of the one that was copied
+    }
+    copyMs_.back() = std::max(copyMs_.back(), 1e3 * (now() - begin));
+}
+
+void JournalKeeper::writeInBackground() {
+    checkpoint_.emplace(checkpointStep_, [begun = std::make_shared<const Begun>(std::move(*begun_)), journal = journal_,
+                                          stripes = stripes_](UnfinishedCheckpoint::Work& work) {
+        double done = 0;
+        writeCheckpoint(journal, begun->checkpoint, begun->copy, kCheckpointsKept, [&] {
+            work.setDone(std::min(1.0, ++done / stripes));
+            work.requireWanted();
+        });
     });
+    begun_.reset();
+}
+
+void JournalKeeper::copyRest(const sand::Replica& replica) {
+    if (begun_) {
+        continueCopy(replica, std::numeric_limits<std::int64_t>::max());
+    }
 }
 
 std::optional<UnfinishedCheckpoint> JournalKeeper::takeUnfinished() { return std::exchange(checkpoint_, std::nullopt); }

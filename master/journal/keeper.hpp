@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/names.hpp"
+#include "master/journal/checkpoint.hpp"
 #include "master/journal/resume.hpp"
 #include "master/journal/unfinished_checkpoint.hpp"
 #include "master/journal/writer.hpp"
@@ -43,7 +44,11 @@ public:
 };
 
 /// Writes the journal and the checkpoints of a session under a policy. Prints on standard error when the disk refuses
-/// something. Main thread only. Another thread compresses and writes the checkpoints.
+/// something. Main thread only.
+///
+/// The main thread copies the sand of a checkpoint over some frames (sand::Replica::beginCopy()), at most kCopiedCells
+/// cells after each. Steps copy the sand that they change before that. Another thread compresses and writes the copy
+/// when it is complete. It never reads the sand of the session.
 class JournalKeeper {
 public:
     /// Begins OUT/session.journal, or continues the journal of `resumed`. `failure` is what stopped the resumed
@@ -77,10 +82,15 @@ public:
     /// Writes the share of the force that an operator has set. It is on disk when the function returns, or with later
     /// steps if the disk is full.
     void force(const journal::JournalForce& force);
-    /// Begins a checkpoint if one is due. Called after every frame, when all steps of `replica` are in the journal.
+    /// Begins a checkpoint if one is due, or continues its copy. Called after every frame, when all steps of `replica`
+    /// are in the journal.
     void shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
-    /// Writes the end of the session. Between doubt() and checked() the journal gets no end. Waits at most half a
-    /// second for a checkpoint that is being written, because the ranks wait meanwhile.
+    static constexpr std::int64_t kCopiedCells = std::int64_t{1} << 20;  // in a millisecond or two
+    /// Copies all that a begun checkpoint lacks of `replica`, before finish().
+    void copyRest(const sand::Replica& replica);
+    /// Writes the end of the session. A checkpoint whose copy is not complete is left out. Between doubt() and
+    /// checked() the journal gets no end. Waits at most half a second for a checkpoint that is being written, because
+    /// the ranks wait meanwhile.
     void finish(const journal::JournalEnd& end);
     /// Returns the checkpoint that is still being written, for UnfinishedCheckpoint::finish(). Call it after finish().
     /// Without this call the destructor gives the checkpoint UnfinishedCheckpoint::kPatience to end.
@@ -93,7 +103,8 @@ public:
     [[nodiscard]] std::string_view state() const;
     [[nodiscard]] bool written() const { return writer_.has_value(); }
     [[nodiscard]] std::uint32_t parts() const { return writer_ ? writer_->part() : 0; }
-    /// Returns how long each checkpoint delayed the frame loop [ms].
+    /// Returns for each checkpoint how long it delayed the frame that it delayed most [ms]. This leaves out what steps
+    /// copy.
     [[nodiscard]] const std::vector<double>& copyMs() const { return copyMs_; }
     [[nodiscard]] std::uint64_t checkpointsFailed() const { return checkpointsFailed_; }
     /// Return how often, and for how long in total [s], the sand was stopped because the disk was full.
@@ -113,12 +124,14 @@ private:
     void requireNoWriter() const;
     void setAside(std::uint64_t step);
     void takeCheckpoint(bool wait);
+    void continueCopy(const sand::Replica& replica, std::int64_t cells);
+    void writeInBackground();
 
     JournalOptions options_;
     std::filesystem::path journal_;
     std::string buildId_;
     std::uint64_t sceneDigest_;
-    double stripes_;                         // pieces in which the heights are compressed
+    double stripes_;                         // pieces in which a state is compressed, at most
     std::optional<JournalWriter> writer_;    // nullopt if off or failed
     bool stopped_ = false;                   // the sand is stopped because the disk is full
     double stoppedSince_ = 0, lastTry_ = 0;  // [s]
@@ -126,6 +139,12 @@ private:
     double stoppedSeconds_ = 0;
     double lastCheckpoint_ = 0;  // [s]
     std::uint64_t checkpointStep_ = 0;
+    /// Checkpoint whose sand is being copied.
+    struct Begun {
+        Checkpoint checkpoint;  // without its state
+        sand::StateCopy copy;
+    };
+    std::optional<Begun> begun_;
     std::optional<UnfinishedCheckpoint> checkpoint_;  // the one that is being written
     std::string complaint_;                           // error message of the last checkpoint
     std::uint64_t checkpointsFailed_ = 0, checkpointsBeyond_ = 0;

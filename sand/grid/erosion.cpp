@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -170,16 +171,29 @@ void Erosion::addFluxes(NetFlux& sum) const {
 
 Inertia Erosion::inertia() const {
     Inertia inertia(undisturbed_);
-    // Keeps the fluxes even at age 0, when they carry no momentum: a band depends on where sand slid.
-    for (const CellRect& run : active_) {
-        for (int x = run.x0; x < run.x1; ++x) {
-            CellRect cells = cellsOf({x, run.y0, x + 1, run.y1});
-            cells.x0 -= x == 0 ? 1 : 0;  // flux over the western rim
-            cells.y0 -= run.y0 == 0 ? 1 : 0;
-            inertia.keep(east_, north_, cells);
+    const TileGrid grid(east_.bounds());
+    const std::vector<bool> flows = tilesWithFlux(grid);
+    for (std::size_t tile = 0; tile < flows.size(); ++tile) {
+        // Keeps the fluxes even at age 0, when they carry no momentum: a band depends on where sand slid.
+        if (flows[tile]) {
+            addFluxes(grid.cellsOf(tile), inertia);
         }
     }
     return inertia;
+}
+
+std::vector<bool> Erosion::tilesWithFlux(const TileGrid& grid) const {
+    std::vector<bool> flows(grid.count());
+    for (const CellRect& run : active_) {
+        grid.forEach(cellsOf(run), [&flows](std::size_t tile) { flows[tile] = true; });
+    }
+    return flows;
+}
+
+void Erosion::addFluxes(CellRect cells, Inertia& inertia) const {
+    cells.x0 -= cells.x0 == 0 ? 1 : 0;  // flux over the western rim
+    cells.y0 -= cells.y0 == 0 ? 1 : 0;
+    inertia.keep(east_, north_, cells);
 }
 
 void Erosion::resume(const Inertia& inertia) {
@@ -189,8 +203,8 @@ void Erosion::resume(const Inertia& inertia) {
     std::fill(written_.begin(), written_.end(), Written::no);
     inertia.putInto(east_, north_);
     inertia.visitAreas([this](const CellRect& cells) {
-        const int first = std::max(cells.y0, 0) / blockSize_, last = (cells.y1 - 1) / blockSize_;
-        std::fill(written_.begin() + first, written_.begin() + std::max(first, last) + 1, Written::lately);
+        const int first = std::max(cells.y0, 0) / blockSize_, last = std::max(cells.y1 - 1, 0) / blockSize_;
+        std::fill(written_.begin() + first, written_.begin() + last + 1, Written::lately);
     });
     undisturbed_ = inertia.undisturbed();
     // A sweep in which an executor threw has left numbers there.

@@ -13,6 +13,7 @@
 #include "sand/grid/erosion_walk.hpp"
 #include "sand/grid/inertia.hpp"
 #include "sand/grid/net_flux.hpp"
+#include "sand/grid/tile_grid.hpp"
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
 #include "sand/model/owed.hpp"
@@ -66,7 +67,7 @@ public:
     /// Runs the sweeps of `part` over `field`; stops earlier after a sweep in which no sand flows.
     ///
     /// No flux raises a cell above the underside of `obstacle`, which is null without a tool. Calls
-    /// `willChange(cells)`, unless it is empty, before heights in these cells may change.
+    /// `willChange(cells)`, unless it is empty, before heights or fluxes of these cells may change.
     Swept sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle = nullptr,
                 const std::function<void(const CellRect&)>& willChange = {});
     /// Runs a step of `sweeps` sweeps. Returns the volume that fell over an open rim [unit · cell].
@@ -86,6 +87,10 @@ public:
     [[nodiscard]] int undisturbed() const { return undisturbed_; }
     /// Returns everything except heights and rules that later sweeps depend on: the last fluxes and their age.
     [[nodiscard]] Inertia inertia() const;
+    /// Returns for each tile of `grid` whether its cells, or the rim beside them, may have a flux other than 0.
+    [[nodiscard]] std::vector<bool> tilesWithFlux(const TileGrid& grid) const;
+    /// Adds the fluxes of `cells` to `inertia`, with those over a western and a southern rim beside them.
+    void addFluxes(CellRect cells, Inertia& inertia) const;
     /// Replaces fluxes and age by those of `inertia`. Wakes every block, because an Inertia does not record which
     /// blocks were at rest. A visit changes no block at rest.
     void resume(const Inertia& inertia);

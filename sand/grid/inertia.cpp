@@ -2,16 +2,19 @@
 #include "sand/grid/inertia.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "base/field_forms.hpp"
+#include "sand/grid/tile_grid.hpp"
 #include "sand/model/grid_codec.hpp"
 #include "sand/model/height_field.hpp"
 
 namespace sand::grid {
 namespace {
 
-constexpr int kPiece = 64;  // [cell], side of a piece after decode()
+constexpr int kPiece = TileGrid::kTile;  // [cell], side of a piece after decode()
 
 /// The numbers before the fluxes.
 struct Head {
@@ -27,24 +30,9 @@ struct Head {
 /// Returns the field's cells, and the column and row of fluxes over the western and southern rim.
 CellRect withRim(int columns, int rows) { return {-1, -1, columns, rows}; }
 
-std::vector<std::int32_t> copyOf(const CellArray& grid, const CellRect& cells) {
-    std::vector<std::int32_t> copy;
-    for (int y = cells.y0; y < cells.y1; ++y) {
-        copy.insert(copy.end(), grid.row(y) + cells.x0, grid.row(y) + cells.x1);
-    }
-    return copy;
-}
-
-bool isZero(const std::vector<std::int32_t>& numbers) {
-    return std::all_of(numbers.begin(), numbers.end(), [](std::int32_t number) { return number == 0; });
-}
-
-void write(const std::vector<std::int32_t>& numbers, const CellRect& cells, CellArray& grid) {
-    auto next = numbers.begin();
-    for (int y = cells.y0; y < cells.y1; ++y) {
-        std::copy_n(next, cells.x1 - cells.x0, grid.row(y) + cells.x0);
-        next += cells.x1 - cells.x0;
-    }
+std::shared_ptr<const PackedCells> copyOf(const CellArray& grid, const CellRect& cells) {
+    PackedCells copy(grid, cells);
+    return copy.isZero() ? nullptr : std::make_shared<const PackedCells>(std::move(copy));
 }
 
 /// Throws unless `flux` is 0, or `flows` and at most `most`. `way` and `cell` name the face.
@@ -75,27 +63,50 @@ void requirePossible(const CellArray& east, const CellArray& north, const FieldF
 }  // namespace
 
 void Inertia::keep(const CellArray& east, const CellArray& north, const CellRect& cells) {
-    Piece piece{cells, copyOf(east, cells), copyOf(north, cells)};
-    if (!isZero(piece.east) || !isZero(piece.north)) {
+    Piece piece{copyOf(east, cells), copyOf(north, cells)};
+    if (piece.east != nullptr || piece.north != nullptr) {
         pieces_.push_back(std::move(piece));
     }
 }
 
 void Inertia::putInto(CellArray& east, CellArray& north) const {
     for (const Piece& piece : pieces_) {
-        write(piece.east, piece.cells, east);
-        write(piece.north, piece.cells, north);
+        if (piece.east != nullptr) {
+            piece.east->putInto(east);
+        }
+        if (piece.north != nullptr) {
+            piece.north->putInto(north);
+        }
     }
+}
+
+void Inertia::encode(std::shared_ptr<const PackedCells> Piece::*fluxes, int columns, int rows, base::ByteWriter& writer,
+                     const std::function<void()>& between) const {
+    CellArray window(columns, kPiece);  // rows [first, first + kPiece), and at first the row beyond the southern rim
+    int first = -2 * kPiece;
+    const auto rowOf = [&](int y) -> const std::int32_t* {
+        if (const int wanted = std::max(y, 0) / kPiece * kPiece; wanted != first) {
+            first = wanted;
+            window = CellArray(columns, kPiece);
+            const int from = first == 0 ? -1 : first;
+            for (const Piece& piece : pieces_) {
+                if (const PackedCells* const packed = (piece.*fluxes).get();
+                    packed != nullptr && packed->cells().y0 < first + kPiece && packed->cells().y1 > from) {
+                    const int begin = std::max(from, packed->cells().y0);
+                    packed->putInto(window, begin, first + kPiece, begin - first);
+                }
+            }
+        }
+        return window.row(y - first);
+    };
+    encodeRows(withRim(columns, rows), rowOf, writer, between);
 }
 
 void Inertia::encode(int columns, int rows, base::ByteWriter& writer, const std::function<void()>& between) const {
     base::putMember(writer, Head{undisturbed_, !pieces_.empty()});
     if (!pieces_.empty()) {
-        CellArray east(columns, rows);
-        CellArray north(columns, rows);
-        putInto(east, north);
-        encodeCells(east, withRim(columns, rows), writer, between);
-        encodeCells(north, withRim(columns, rows), writer, between);
+        encode(&Piece::east, columns, rows, writer, between);
+        encode(&Piece::north, columns, rows, writer, between);
     }
 }
 

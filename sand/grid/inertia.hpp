@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "sand/grid/packed_cells.hpp"
 #include "sand/model/cell_array.hpp"
 #include "sand/model/rules.hpp"
 
@@ -26,7 +28,7 @@ struct FieldFaces {
 
 /// Everything except heights that the next sweeps depend on: the fluxes of the last sweep, and the age of the inertia.
 /// The fluxes also show in which cells sand slid. Only areas in which sand flowed are held, so that sand at rest takes
-/// no memory.
+/// no memory. Copies share the fluxes.
 class Inertia {
 public:
     static constexpr int kMostCounted = 1000;  // [sweep]; the momentum reaches its maximum long before
@@ -34,7 +36,8 @@ public:
     Inertia() = default;
     explicit Inertia(int undisturbed) : undisturbed_(undisturbed) {}
 
-    /// Copies the fluxes of `cells`, unless all of them are 0. Pass each cell only once.
+    /// Copies the fluxes of `cells`, unless all of them are 0. Pass each cell only once, and rectangles of few cells,
+    /// because the fluxes of a rectangle are packed and unpacked together.
     void keep(const CellArray& east, const CellArray& north, const CellRect& cells);
     /// Writes the kept fluxes into `east` and `north`, whose fluxes must be 0.
     void putInto(CellArray& east, CellArray& north) const;
@@ -43,12 +46,12 @@ public:
     template <class Visit>
     void visitAreas(const Visit& visit) const {
         for (const Piece& piece : pieces_) {
-            visit(piece.cells);
+            visit((piece.east != nullptr ? piece.east : piece.north)->cells());
         }
     }
 
     /// Writes the fluxes as two whole grids of a field of this size. The division into pieces makes no difference.
-    /// Calls `between` as encodeCells() does.
+    /// Needs memory for a few rows of them. Calls `between` as encodeCells() does.
     void encode(int columns, int rows, base::ByteWriter& writer, const std::function<void()>& between = {}) const;
     /// Reads what encode() wrote. Throws base::FormatError for invalid bytes, and for a flux that no sweep of these
     /// faces makes. A sweep takes the fluxes of closed rims from memory, where they are 0, and never computes them.
@@ -57,9 +60,10 @@ public:
 
 private:
     struct Piece {
-        CellRect cells;
-        std::vector<std::int32_t> east, north;  // row by row
+        std::shared_ptr<const PackedCells> east, north;  // null if all of these fluxes are 0
     };
+    void encode(std::shared_ptr<const PackedCells> Piece::*fluxes, int columns, int rows, base::ByteWriter& writer,
+                const std::function<void()>& between) const;
     int undisturbed_ = 0;
     std::vector<Piece> pieces_;
 };

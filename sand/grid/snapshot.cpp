@@ -33,12 +33,10 @@ void requireAbove(const Ground& ground, const HeightField& field) {
 
 }  // namespace
 
-base::Bytes Snapshot::encode(const std::function<void()>& between) const {
-    base::ByteWriter writer;
+void Snapshot::encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const {
     writer.put(outflow);
     encodeCells(field.cells(), field.bounds(), writer, between);
     inertia.encode(field.columns(), field.rows(), writer, between);
-    return writer.take();
 }
 
 Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, const SandLimits& limits) {

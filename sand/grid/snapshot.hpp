@@ -25,11 +25,10 @@ public:
     Snapshot(HeightField heights, Inertia fluxes, std::int64_t over)
         : field(std::move(heights)), inertia(std::move(fluxes)), outflow(over) {}
 
-    using SurfaceCopy::encode;
-    [[nodiscard]] base::Bytes encode(const std::function<void()>& between) const override;
-    /// Reads what encode() wrote for a field with these limits. Throws base::FormatError for invalid bytes, for sand
-    /// below rock, for fluxes that Inertia::decode() refuses, and if further bytes follow. Volume and outflow together
-    /// must be within ±kMaxHeight times the number of cells; steps keep that sum.
+    void encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const override;
+    /// Reads what encodeInto() wrote for a field with these limits. Throws base::FormatError for invalid bytes, for
+    /// sand below rock, for fluxes that Inertia::decode() refuses, and if further bytes follow. Volume and outflow
+    /// together must be within ±kMaxHeight times the number of cells; steps keep that sum.
     static Snapshot decode(std::span<const std::uint8_t> bytes, const SandLimits& limits);
 
     HeightField field;

@@ -43,6 +43,13 @@ std::unique_ptr<Surface> GridSurface::clone() const {
     return copy;
 }
 
+void GridSurface::willChange(const CellRect& cells) {
+    beforeStroke_.willChange(field_, cells);
+    if (const std::shared_ptr<TileCopy> copy = begun_.get()) {
+        copy->willChange(field_, erosion_, cells);
+    }
+}
+
 void GridSurface::touch(const CellRect& cells) {
     if (cells.empty()) {
         return;
@@ -76,7 +83,7 @@ void GridSurface::drag(const Tool& tool, std::span<const ProbePoint> whole) {
     // Searches take at most as long as the longest path.
     std::int64_t searches = std::max<std::int64_t>(rules_.mostSubsteps() / Displacement::kMostTrials, 1);
     for (std::size_t i = 1; i < path.size(); ++i) {
-        beforeStroke_.willChange(field_, displacement.cellsChanged(field_, path[i - 1], path[i]));
+        willChange(displacement.cellsChanged(field_, path[i - 1], path[i]));
         const Displacement::Work done =
             displacement.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i], !refused_.first, searches);
         searches -= done.searches;
@@ -105,7 +112,7 @@ void GridSurface::slideCoarsely(const CellRect& way, const Tool* tool, const Pro
     if (patch.empty()) {
         return;
     }
-    beforeStroke_.willChange(field_, patch.grownBy(plan.coarsest).clippedTo(field_.bounds()));
+    willChange(patch.grownBy(plan.coarsest).clippedTo(field_.bounds()));
     const Obstacle here = tool == nullptr ? Obstacle{} : displacement.obstacle(field_, probe);
     const CoarseLevel::Site site{field_, rules_, ground_.get(), here.cells.empty() ? nullptr : &here, how_};
     for (int side = plan.coarsest; side >= plan.finest; side /= 2) {
@@ -121,11 +128,11 @@ void GridSurface::slideCoarsely(const CellRect& way, const Tool* tool, const Pro
 Swept GridSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
     const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, probe);
     const std::int64_t before = erosion_.sweepsDone();
-    std::function<void(const CellRect&)> willChange;
-    if (beforeStroke_.any()) {
-        willChange = [this](const CellRect& cells) { beforeStroke_.willChange(field_, cells); };
+    std::function<void(const CellRect&)> changes;
+    if (beforeStroke_.any() || begun_.get() != nullptr) {
+        changes = [this](const CellRect& cells) { willChange(cells); };
     }
-    const Erosion::Swept swept = erosion_.sweep(field_, part, tool == nullptr ? nullptr : &here, willChange);
+    const Erosion::Swept swept = erosion_.sweep(field_, part, tool == nullptr ? nullptr : &here, changes);
     outflow_ += swept.outflow;
     for (const CellRect& block : erosion_.takeMoved()) {
         touch(block);
@@ -140,7 +147,7 @@ void GridSurface::changeRules(const Rules& rules) {
 }
 
 bool GridSurface::settle() {
-    beforeStroke_.willChange(field_, field_.bounds());
+    willChange(field_.bounds());
     WorkLimit limit(mostSettlingWork());
     const Settled settled = sand::grid::settle(field_, rules_, nullptr, base::fastestCodePath(), &limit);
     outflow_ += settled.outflow;
@@ -150,7 +157,7 @@ bool GridSurface::settle() {
 }
 
 void GridSurface::reset() {
-    beforeStroke_.willChange(field_, field_.bounds());
+    willChange(field_.bounds());
     base::ByteReader reader(*start_);
     decodeCells(reader, field_.bounds(), kMaxHeight, field_.cells());
     erosion_.resume({});
@@ -163,7 +170,10 @@ std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
 }
 
 void GridSurface::putBackKept() {
-    for (const CellRect& tile : beforeStroke_.putBackHeights(field_)) {
+    willChange(field_.bounds());  // all fluxes
+    const std::vector<CellRect> changed = beforeStroke_.changed();
+    beforeStroke_.putBackHeights(field_);
+    for (const CellRect& tile : changed) {
         touch(tile);
     }
     erosion_.resume(beforeStroke_.inertia());
@@ -172,6 +182,21 @@ void GridSurface::putBackKept() {
 
 std::shared_ptr<const SurfaceCopy> GridSurface::copy() const {
     return std::make_shared<const Snapshot>(field_, erosion_.inertia(), outflow_);
+}
+
+Surface::Copies GridSurface::beginCopy() const {
+    const auto sand = std::make_shared<TileCopy>(field_, erosion_, outflow_);
+    begun_.begin(sand);
+    return {sand, hasKept() ? std::make_shared<const KeptCopy>(beforeStroke_, sand) : nullptr};
+}
+
+bool GridSurface::continueCopy(std::int64_t cells) const {
+    const std::shared_ptr<TileCopy> copy = begun_.get();
+    if (copy == nullptr) {
+        return false;
+    }
+    copy->copyMore(field_, erosion_, cells);
+    return true;
 }
 
 SurfaceReader GridSurface::reader() const {
@@ -184,7 +209,7 @@ SurfaceReader GridSurface::reader() const {
 
 void GridSurface::replace(const SurfaceCopy& copy) {
     const auto& sand = dynamic_cast<const Snapshot&>(copy);
-    beforeStroke_.willChange(field_, field_.bounds());
+    willChange(field_.bounds());
     field_ = sand.field;
     erosion_.resume(sand.inertia);
     outflow_ = sand.outflow;
@@ -226,6 +251,10 @@ std::vector<std::int32_t> GridSurface::valuesOf(int tile) const {
 }
 
 void GridSurface::corrupt(int column, int row, int bit) {
+    // Not the undo, because a fault of the memory changes it as well.
+    if (const std::shared_ptr<TileCopy> copy = begun_.get()) {
+        copy->willChange(field_, erosion_, {column, row, column + 1, row + 1});
+    }
     field_.setHeight(column, row, field_.height(column, row) ^ (std::int32_t{1} << bit));
 }
 

@@ -7,6 +7,7 @@
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/displacement.hpp"
 #include "sand/grid/erosion.hpp"
+#include "sand/grid/tile_copy.hpp"
 #include "sand/grid/tile_hash.hpp"
 #include "sand/grid/undo.hpp"
 #include "sand/model/movement.hpp"
@@ -45,6 +46,8 @@ public:
     void putBackKept() override;
 
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
+    [[nodiscard]] Copies beginCopy() const override;
+    bool continueCopy(std::int64_t cells) const override;
     [[nodiscard]] SurfaceReader reader() const override;
     void replace(const SurfaceCopy& copy) override;
 
@@ -71,7 +74,9 @@ public:
     [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
-    /// Records a change of `cells` for hash and takeChange(). Before it, the undo must have been told.
+    /// Must be called before heights or fluxes of `cells` change. Undo and a begun copy take their sand.
+    void willChange(const CellRect& cells);
+    /// Records a change of `cells` for hash and takeChange(). Call willChange() before it.
     void touch(const CellRect& cells);
     /// Records a change of the whole field.
     void touchAll();
@@ -87,6 +92,7 @@ private:
     std::int64_t outflow_ = 0;
     std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; clones share them
     Undo beforeStroke_;                         // sand for an undo
+    mutable BegunCopy begun_;                   // no part of the sand
     std::optional<BlockMarks> changed_;         // blocks changed since takeChange(); nullopt: all
 };
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "sand/grid/inertia.hpp"
+#include "sand/grid/packed_cells.hpp"
 #include "sand/grid/snapshot.hpp"
+#include "sand/grid/tile_grid.hpp"
 #include "sand/model/height_field.hpp"
 
 namespace sand::grid {
@@ -14,11 +17,12 @@ namespace sand::grid {
 /// Sand before a stroke, kept for an undo.
 ///
 /// keep() copies no heights. A tile is copied before a drag, a sweep or an edit first visits it after that. So the
-/// first step of a stroke on a large field takes no longer than any other. The memory is four bytes for each cell of
-/// these tiles. After a change of the rules and after resume(), a sweep visits all tiles once. Not thread-safe.
+/// first step of a stroke on a large field takes no longer than any other. The tiles are packed: steep sand takes about
+/// two bytes for each of their cells. After a change of the rules and after resume(), a sweep visits all tiles once.
+/// Not thread-safe.
 class Undo {
 public:
-    static constexpr int kTile = 64;  // side of a tile [cell]
+    static constexpr int kTile = TileGrid::kTile;  // side of a tile [cell]
 
     /// Keeps the sand of `field`.
     void keep(const HeightField& field, Inertia inertia, std::int64_t outflow);
@@ -34,21 +38,24 @@ public:
     [[nodiscard]] Snapshot copy(const HeightField& field) const;
     /// Returns the height of a cell in the kept sand [unit]. Requires any().
     [[nodiscard]] std::int32_t height(const HeightField& field, int column, int row) const;
+    /// Returns the heights of each tile of the kept sand; null for a tile whose heights are those of the field.
+    /// Requires any(). The tiles never change, so they may be shared.
+    [[nodiscard]] const std::vector<std::shared_ptr<const PackedCells>>& tiles() const { return kept_->tiles; }
     /// Fluxes and outflow of the kept sand. Requires any().
     [[nodiscard]] const Inertia& inertia() const { return kept_->inertia; }
     [[nodiscard]] std::int64_t outflow() const { return kept_->outflow; }
-    /// Writes the kept heights back into `field`, and returns the cells that may have changed. Requires any().
-    [[nodiscard]] std::vector<CellRect> putBackHeights(HeightField& field);
+    /// Returns the cells that putBackHeights() may change. Requires any().
+    [[nodiscard]] std::vector<CellRect> changed() const;
+    /// Writes the kept heights back into `field`. The kept sand is then that of the field. Requires any().
+    void putBackHeights(HeightField& field);
 
 private:
     struct Kept {
         Inertia inertia;
         std::int64_t outflow;  // [unit · cell]
-        int tilesAcross;
-        // Heights of each tile, row by row; empty for a tile whose heights are those of the field [unit].
-        std::vector<std::vector<std::int32_t>> tiles;
+        TileGrid grid;
+        std::vector<std::shared_ptr<const PackedCells>> tiles;
 
-        [[nodiscard]] CellRect cellsOf(std::size_t tile, const HeightField& field) const;
         void putInto(HeightField& field) const;
     };
     std::optional<Kept> kept_;

@@ -81,13 +81,20 @@ private:
 
 void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer,
                  const std::function<void()>& between) {
+    encodeRows(
+        cells, [&grid](int row) { return grid.row(row); }, writer, between);
+}
+
+void encodeRows(const CellRect& cells, const std::function<const std::int32_t*(int row)>& rowOf,
+                base::ByteWriter& writer, const std::function<void()>& between) {
     const auto across = static_cast<std::size_t>(cells.x1 - cells.x0);
-    const std::size_t place = writer.beginBlock();
+    const std::uint64_t place = writer.beginBlock();
     std::vector<std::int32_t> plain;
     plain.reserve(std::min(countOf(cells), kStripe + across));
     base::Bytes packed;
     for (int y = cells.y0; y < cells.y1; ++y) {
-        plain.insert(plain.end(), grid.row(y) + cells.x0, grid.row(y) + cells.x1);
+        const std::int32_t* const row = rowOf(y);
+        plain.insert(plain.end(), row + cells.x0, row + cells.x1);
         if (y + 1 == cells.y1 || plain.size() + across > kStripe) {
             appendFrame(plain, packed, writer);
             plain.clear();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -18,6 +19,11 @@ inline constexpr std::size_t kStripe = std::size_t{1} << 20;
 /// and for the compressed bytes. Calls `between` after each stripe, unless it is empty. It may throw, in order to stop.
 void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer,
                  const std::function<void()>& between = {});
+
+/// Writes the same for cells whose rows are given one after another. `rowOf(row)` returns a pointer to cell 0 of the
+/// row, which is valid until its next call.
+void encodeRows(const CellRect& cells, const std::function<const std::int32_t*(int row)>& rowOf,
+                base::ByteWriter& writer, const std::function<void()>& between = {});
 
 /// Returns what encodeCells() writes.
 [[nodiscard]] std::shared_ptr<const base::Bytes> packedCells(const CellArray& grid, const CellRect& cells,

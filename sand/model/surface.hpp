@@ -48,10 +48,18 @@ public:
     SurfaceCopy(const SurfaceCopy&) = default;
     SurfaceCopy& operator=(const SurfaceCopy&) = default;
     virtual ~SurfaceCopy() = default;
-    /// Returns the snapshot as compressed bytes for a SurfaceReader. Calls `between` meanwhile, at least once, unless
-    /// it is empty. It may throw, in order to stop.
-    [[nodiscard]] virtual base::Bytes encode(const std::function<void()>& between) const = 0;
-    [[nodiscard]] base::Bytes encode() const { return encode({}); }
+    /// Writes the snapshot as compressed bytes for a SurfaceReader. Calls `between` meanwhile, at least once, unless
+    /// it is empty. It may throw, in order to stop. Requires complete().
+    virtual void encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const = 0;
+    /// Returns what encodeInto() writes.
+    [[nodiscard]] base::Bytes encode(const std::function<void()>& between = {}) const {
+        base::ByteWriter writer;
+        encodeInto(writer, between);
+        return writer.take();
+    }
+    /// Returns whether the snapshot has all of its sand. Surface::beginCopy() begins one that gets it later. Call it
+    /// in the thread of the surface.
+    [[nodiscard]] virtual bool complete() const { return true; }
 };
 
 /// The result of sweeps.
@@ -135,6 +143,19 @@ public:
 
     /// Returns a snapshot of the current sand.
     [[nodiscard]] virtual std::shared_ptr<const SurfaceCopy> copy() const = 0;
+    /// Snapshots of one moment, of the current and of the kept sand. `kept` is null if hasKept() is false.
+    struct Copies {
+        std::shared_ptr<const SurfaceCopy> sand, kept;
+    };
+    /// Begins snapshots of this moment, which are only for encodeInto(). Parts of the sand are copied before they next
+    /// change, and the other parts by continueCopy(). A surface completes only the snapshots that were begun last.
+    ///
+    /// Until complete(), the snapshots belong to the thread of the surface. Then they never change again, and any
+    /// thread may read them.
+    [[nodiscard]] virtual Copies beginCopy() const { return {copy(), kept()}; }
+    /// Copies at least `cells` further cells, or all that are left, into the snapshots that were begun last. Returns
+    /// false if they are complete, or if there are none.
+    virtual bool continueCopy(std::int64_t /* cells */) const { return false; }
     /// Returns the function that decodes snapshots for this surface.
     [[nodiscard]] virtual SurfaceReader reader() const = 0;
     /// Replaces the sand by `copy`, which must come from copy(), kept() or a SurfaceReader of this surface.

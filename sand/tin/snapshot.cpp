@@ -55,11 +55,10 @@ Snapshot::Snapshot(std::span<const std::uint8_t> packed, const SandLimits& limit
     }
 }
 
-base::Bytes Snapshot::encode(const std::function<void()>& between) const {
+void Snapshot::encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const {
     if (between) {
         between();  // once, because a TIN is small
     }
-    base::ByteWriter writer;
     state_.encode(writer);
     writer.put(static_cast<std::uint64_t>(plain_.size()));
     base::Bytes packed(ZSTD_compressBound(plain_.size()));
@@ -69,7 +68,6 @@ base::Bytes Snapshot::encode(const std::function<void()>& between) const {
     }
     packed.resize(used);
     writer.putBytes(packed);
-    return writer.take();
 }
 
 VertexSand Snapshot::layer() const {

@@ -39,8 +39,7 @@ public:
     /// outflow together must be within ±kMostSand; steps keep that sum. Allocates memory only for limits.mostVertices.
     Snapshot(std::span<const std::uint8_t> packed, const SandLimits& limits);
 
-    using SurfaceCopy::encode;
-    [[nodiscard]] base::Bytes encode(const std::function<void()>& between) const override;
+    void encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const override;
     [[nodiscard]] VertexSand layer() const;
     [[nodiscard]] const TinState& state() const { return state_; }
 

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 
 namespace {
 
@@ -16,6 +18,43 @@ Bytes written(std::uint64_t value) {
     base::ByteWriter writer;
     writer.putVarint(value);
     return writer.take();
+}
+
+/// Keeps what a writer passes on.
+class Passed final : public base::ByteSink {
+public:
+    void write(std::span<const std::uint8_t> piece) override {
+        bytes.insert(bytes.end(), piece.begin(), piece.end());
+        ++pieces;
+    }
+    void overwrite(std::uint64_t place, std::span<const std::uint8_t> piece) override {
+        std::copy(piece.begin(), piece.end(), bytes.begin() + static_cast<std::ptrdiff_t>(place));
+    }
+    Bytes bytes;
+    int pieces = 0;
+};
+
+TEST(ByteWriter, PassesTheSameBytesToASink) {
+    const auto writeTo = [](base::ByteWriter& writer) {
+        const std::uint64_t outer = writer.beginBlock();
+        writer.putText("a block that is passed on before its end");
+        for (const std::size_t size : {std::size_t{10}, base::ByteWriter::kPiece, base::ByteWriter::kPiece / 3}) {
+            const std::uint64_t inner = writer.beginBlock();
+            writer.putBytes(Bytes(size, 7));
+            writer.endBlock(inner);
+            writer.putVarint(size);
+        }
+        writer.endBlock(outer);
+        writer.putBlock({});
+    };
+    base::ByteWriter whole;
+    writeTo(whole);
+    Passed passed;
+    base::ByteWriter inPieces(passed);
+    writeTo(inPieces);
+    EXPECT_GT(passed.pieces, 0);
+    inPieces.flush();
+    EXPECT_TRUE(passed.bytes == whole.bytes());
 }
 
 TEST(Varint, OfEveryLengthIsReadAsItWasWritten) {

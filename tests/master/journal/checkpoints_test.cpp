@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -62,12 +64,67 @@ TEST_F(Checkpoints, AFileThatIsLeftOutLeavesNothing) {
     const auto stop = [] { throw std::runtime_error("it is left out"); };
     master::Checkpoint checkpoint;
     checkpoint.step = 1;
-    checkpoint.state = base::Bytes(10, 7);
-    EXPECT_THROW(master::writeCheckpoint(journal(), checkpoint, 3, stop), std::runtime_error);
+    EXPECT_THROW(master::writeCheckpoint(journal(), checkpoint, replica_.copyState(), 3, stop), std::runtime_error);
     const std::filesystem::path folder = master::checkpointFile(journal(), 1).parent_path();
     EXPECT_TRUE(std::filesystem::is_empty(folder));
-    master::writeCheckpoint(journal(), checkpoint, 3);
+    master::writeCheckpoint(journal(), checkpoint, replica_.copyState(), 3, [] {});
     EXPECT_EQ(master::checkpointsOf(journal()), Steps{1});
+}
+
+/// Returns the bytes of a file.
+base::Bytes bytesOf(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// It is compressed into its file, so the lengths in it are written when what they are the lengths of is known.
+TEST_F(Checkpoints, OneThatIsWrittenInPiecesHasTheBytesOfAWholeOne) {
+    scene_ = samples::flatScene(700, 750);
+    scene_.terrain = samples::randomField(700, 750, 1 << 24, random_);
+    replica_ = sand::Replica(scene_);
+    begin({});
+    ASSERT_TRUE(showFrame());
+    replica_.apply({1, 2, true, {{300 * sand::kProbePerCell, 300 * sand::kProbePerCell, 0}}});
+    master::Checkpoint checkpoint{7, "test", 8, 2, 3, 1, replica_.stateHash(), {}};
+    int stripes = 0;
+    master::writeCheckpoint(journal(), checkpoint, replica_.copyState(), 3, [&stripes] { ++stripes; });
+    EXPECT_GT(stripes, 3);
+    checkpoint.state = replica_.encodeState();
+    ASSERT_GT(checkpoint.state.size(), 3 * base::ByteWriter::kPiece);
+    EXPECT_TRUE(bytesOf(master::checkpointFile(journal(), 2)) == checkpoint.encode());
+    master::writeCheckpoint(journal(), checkpoint, 3);
+    EXPECT_TRUE(bytesOf(master::checkpointFile(journal(), 2)) == checkpoint.encode());
+}
+
+// Steps change the sand while it is copied.
+TEST_F(Checkpoints, OneOfALargeFieldHasTheStateOfTheFrameAtWhichItBegan) {
+    scene_ = samples::flatScene(1200, 1000);
+    static_assert(1200 * 1000 > master::JournalKeeper::kCopiedCells);
+    replica_ = sand::Replica(scene_);
+    begin({.checkpointSeconds = kAlways});
+    ASSERT_TRUE(showFrame());
+    const base::Bytes first = replica_.encodeState();
+    keeper_->copyRest(replica_);
+    while (keeper_->copyMs().size() < 2) {  // until the second one begins
+        ASSERT_TRUE(showFrame());
+    }
+    const std::uint64_t second = replica_.stepNumber();
+    const base::Bytes state = replica_.encodeState();
+    ASSERT_TRUE(showFrame());
+    ASSERT_TRUE(showFrame());
+    end();
+    ASSERT_EQ(master::checkpointsOf(journal()), (Steps{second, 1}));
+    EXPECT_TRUE(master::readCheckpoint(master::checkpointFile(journal(), 1)).state == first);
+    EXPECT_TRUE(master::readCheckpoint(master::checkpointFile(journal(), second)).state == state);
+}
+
+TEST_F(Checkpoints, OneWhoseCopyIsNotCompleteAtTheEndIsLeftOut) {
+    scene_ = samples::flatScene(1200, 1000);
+    replica_ = sand::Replica(scene_);
+    begin({.checkpointSeconds = kAlways});
+    ASSERT_TRUE(showFrame());
+    end();
+    EXPECT_EQ(master::checkpointsOf(journal()), Steps{});
 }
 
 // The newest two may be damaged.

@@ -57,7 +57,7 @@ TEST(GridUndo, PutsBackEveryCellOfARectangleThatHasChanged) {
         HeightField field = before;
         undo.willChange(field, cells);
         raise(field, cells);
-        (void)undo.putBackHeights(field);
+        undo.putBackHeights(field);
         ASSERT_TRUE(sameHeights(field, before))
             << cells.x0 << ", " << cells.y0 << " to " << cells.x1 << ", " << cells.y1;
     });
@@ -92,7 +92,7 @@ TEST(GridUndo, TakesOverSandThatDiffersFromTheField) {
         sand::grid::Undo undo;
         undo.keep(sand::grid::Snapshot(other, {}, 7), field);
         HeightField now = field;
-        (void)undo.putBackHeights(now);
+        undo.putBackHeights(now);
         ASSERT_TRUE(sameHeights(now, other));
         ASSERT_EQ(undo.outflow(), 7);
     });

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sand/model/cell_array.hpp"
+
+namespace sand::grid {
+
+/// Copy of the numbers of a rectangle of cells, in as few bits as they need.
+///
+/// Making it takes about as long as copying the numbers. Heights of steep sand take about 17 bits each, fluxes fewer.
+/// It never changes, so any thread may read it.
+class PackedCells {
+public:
+    /// Copies the numbers of `cells`, which must not be empty and may include ghost cells.
+    PackedCells(const CellArray& grid, const CellRect& cells);
+
+    [[nodiscard]] const CellRect& cells() const { return cells_; }
+    /// Returns whether all numbers are 0.
+    [[nodiscard]] bool isZero() const { return isZero_; }
+    /// Writes the numbers of rows [first, end) into `grid`, row `first` of them into its row `to`.
+    void putInto(CellArray& grid, int first, int end, int to) const;
+    void putInto(CellArray& grid) const { putInto(grid, cells_.y0, cells_.y1, cells_.y0); }
+    /// Returns the number of a cell. Takes time for all rows of cells() up to `row`.
+    [[nodiscard]] std::int32_t at(int column, int row) const;
+    /// Returns whether both have the same cells and numbers.
+    friend bool operator==(const PackedCells&, const PackedCells&) = default;
+
+private:
+    // The cells of a row fill vectors of kLanes numbers; the last number is repeated. Vectors are packed in groups of
+    // kGroup. A group has one number of bits. Lane i of its words has the bits of all numbers i of its vectors. A group
+    // holds either the numbers or their differences to the row in the south. A difference in the first row is to the
+    // cell in the west.
+    static constexpr int kLanes = 16, kGroup = 32;
+    struct Group {
+        std::uint8_t bits = 0;  // of each number
+        bool differences = false;
+        std::size_t words = 0;  // place of its first word
+        friend bool operator==(const Group&, const Group&) = default;
+    };
+
+    [[nodiscard]] std::size_t across() const;  // numbers in a row, with repeated ones
+    [[nodiscard]] std::vector<std::int32_t> plainOf(const CellArray& grid) const;
+    [[nodiscard]] std::vector<std::int32_t> unpacked() const;
+    [[nodiscard]] std::uint32_t bitsOf(std::size_t place) const;
+
+    CellRect cells_;
+    std::int32_t first_ = 0;  // number of the south-western cell
+    bool isZero_ = false;
+    std::vector<Group> groups_;
+    std::vector<std::uint32_t> words_;
+};
+
+}  // namespace sand::grid
