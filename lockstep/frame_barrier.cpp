@@ -166,8 +166,8 @@ FrameMessage FrameBarrier::begin(FrameMessage fromMaster, std::size_t& bytes) {
         const std::size_t first = std::min(message.size(), kRoom);
         std::copy_n(message.begin(), first, packet.begin() + sizeof length);
         sendToAll(packet.data(), sizeof length + first, kFrameTag);
-        if (length > kRoom) {  // a long catch-up
-            sendToAll(message.data() + kRoom, length - kRoom, kRestTag);
+        for (std::uint64_t done = kRoom; done < length; done += kMpiPiece) {  // a long catch-up, or a load
+            sendToAll(message.data() + done, std::min(kMpiPiece, length - done), kRestTag);
         }
         bytes = length;
         return fromMaster;
@@ -177,8 +177,8 @@ FrameMessage FrameBarrier::begin(FrameMessage fromMaster, std::size_t& bytes) {
     std::memcpy(&length, packet.data(), sizeof length);
     message.resize(length);
     std::copy_n(packet.begin() + sizeof length, std::min<std::size_t>(length, kRoom), message.begin());
-    if (length > kRoom) {
-        receiveFromMaster(message.data() + kRoom, length - kRoom, kRestTag);
+    for (std::uint64_t done = kRoom; done < length; done += kMpiPiece) {
+        receiveFromMaster(message.data() + done, std::min(kMpiPiece, length - done), kRestTag);
     }
     bytes = length;
     return base::decoded<FrameMessage>(message);

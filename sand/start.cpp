@@ -168,11 +168,8 @@ std::int64_t Start::mostStateBytes() const {
     if (tin != nullptr) {
         return 0;
     }
-    // Heights and two fluxes, now and before the stroke. Numbers that cannot be compressed take a little more than
-    // their four bytes. A tile of 64 x 64 cells has a few bytes of movement.
-    constexpr std::int64_t kPerCell = 6 * sizeof(std::int32_t) + 1, kMost = (std::int64_t{1} << 32) - (1 << 16);
-    const std::int64_t cells = (std::int64_t{rules.columns} + 2) * (std::int64_t{rules.rows} + 2);
-    return std::min(kPerCell * cells + (1 << 20), kMost);
+    // Heights and two fluxes, now and before the stroke. Movement has a few bytes for 32 x 32 cells.
+    return rules.mostBytesOf(6);
 }
 
 SizeText Start::sizeText() const {

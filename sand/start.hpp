@@ -89,7 +89,7 @@ struct Start {
     [[nodiscard]] std::int64_t bytesToDraw() const;
     /// Returns the volume of the heights [unit · cell]; nullopt for a TIN, whose volume takes seconds (volumeOf()).
     [[nodiscard]] std::optional<std::int64_t> volumeOfHeights() const;
-    /// Returns an upper bound of Replica::encodeState() for a height field, at most 2^32 - 2^16 [byte]; 0 for a TIN.
+    /// Returns an upper bound of Replica::encodeState() for a height field, at most 2^32 - 2^26 [byte]; 0 for a TIN.
     [[nodiscard]] std::int64_t mostStateBytes() const;
     [[nodiscard]] SizeText sizeText() const;
 };

@@ -49,7 +49,7 @@ public:
     /// setMaxUnsent() bytes in ordinary messages, or a second long message.
     void sendBytes(base::Bytes bytes);
     void expectState(bool expected, std::size_t most = kMaxState) { reader_.expectState(expected, most); }
-    void expectLoads(bool expected) { reader_.expectLoads(expected); }
+    void expectLoads(bool expected, std::size_t most = kMaxState) { reader_.expectLoads(expected, most); }
     /// Sets the largest length of an ordinary message from now on [byte].
     void limit(std::size_t most) { reader_.limit(most); }
     /// Sets how many bytes of ordinary messages may wait to be sent; kMaxUnsent at first.

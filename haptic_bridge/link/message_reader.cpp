@@ -26,10 +26,15 @@ constexpr std::uint8_t typeOf() {
 
 }  // namespace
 
-std::size_t MessageReader::mostLength() const { return stateExpected_ ? std::max(kMaxState, mostState_) : kMaxState; }
+std::size_t MessageReader::mostOf(std::uint8_t type) const {
+    if (type == typeOf<State>() && stateExpected_) {
+        return std::max(most_, mostState_);
+    }
+    return type == typeOf<EditRequest>() && loadsExpected_ ? std::max(most_, mostLoad_) : most_;
+}
 
-bool MessageReader::mayBeLong(std::uint8_t type) const {
-    return type == typeOf<State>() ? stateExpected_ : type == typeOf<EditRequest>() && loadsExpected_;
+std::size_t MessageReader::mostLength() const {
+    return std::max(mostOf(typeOf<State>()), mostOf(typeOf<EditRequest>()));
 }
 
 void MessageReader::freeLongMessage() {
@@ -54,17 +59,18 @@ std::optional<Message> MessageReader::next() {
         return std::nullopt;
     }
     const std::uint32_t length = framedLength(stream);
-    const bool longMessage = length > most_;
-    if (length == 0 || length > mostLength() || (longMessage && !stateExpected_ && !loadsExpected_)) {
-        throw base::FormatError(fmt::format("a message of {} bytes; at most {} are allowed", length, most_));
+    if (length == 0 || length > mostLength()) {
+        throw base::FormatError(fmt::format("a message of {} bytes; at most {} are allowed", length, mostLength()));
     }
-    if (longMessage && stream.size() > kLengthBytes && !mayBeLong(stream[kLengthBytes])) {
-        throw base::FormatError(fmt::format("a message of {} bytes that holds no sand", length));
-    }
-    if (length > kMaxState && stream.size() > kLengthBytes && stream[kLengthBytes] != typeOf<State>()) {
-        throw base::FormatError(fmt::format("a load of {} bytes; at most {} are allowed", length, kMaxState));
+    if (stream.size() > kLengthBytes && length > mostOf(stream[kLengthBytes])) {
+        throw base::FormatError(fmt::format("a message of {} bytes and type {}; at most {} are allowed", length,
+                                            stream[kLengthBytes], mostOf(stream[kLengthBytes])));
     }
     if (stream.size() < kLengthBytes + length) {
+        if (length > kMaxKept && stream.size() > kLengthBytes) {
+            // At once, because a buffer that grows is copied, and holds up to twice as much.
+            buffer_.reserve(begin_ + kLengthBytes + length);
+        }
         return std::nullopt;
     }
     begin_ += kLengthBytes + length;

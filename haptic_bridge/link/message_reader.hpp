@@ -22,8 +22,11 @@ public:
         stateExpected_ = expected;
         mostState_ = most;
     }
-    /// Sets whether an EditRequest that loads sand, of up to kMaxState bytes, may come.
-    void expectLoads(bool expected) { loadsExpected_ = expected; }
+    /// Sets whether an EditRequest that loads sand, of up to `most` bytes, may come.
+    void expectLoads(bool expected, std::size_t most = kMaxState) {
+        loadsExpected_ = expected;
+        mostLoad_ = most;
+    }
     /// Sets the largest length of an ordinary message from now on [byte]; kMaxMessage at first.
     void limit(std::size_t most) { most_ = most; }
     /// Returns whether the stream ends in the middle of a message.
@@ -33,11 +36,13 @@ public:
 
 private:
     void freeLongMessage();
-    [[nodiscard]] bool mayBeLong(std::uint8_t type) const;
+    /// Returns the largest length of a message of `type`.
+    [[nodiscard]] std::size_t mostOf(std::uint8_t type) const;
+    /// Returns the largest length of a message of any type.
     [[nodiscard]] std::size_t mostLength() const;
 
     base::Bytes buffer_;
-    std::size_t begin_ = 0, most_ = kMaxMessage, mostState_ = kMaxState;
+    std::size_t begin_ = 0, most_ = kMaxMessage, mostState_ = kMaxState, mostLoad_ = kMaxState;
     bool stateExpected_ = false, loadsExpected_ = false;
 };
 

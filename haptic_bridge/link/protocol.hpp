@@ -28,10 +28,10 @@ inline constexpr std::uint16_t kDefaultPort = 7750;
 inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload of an ordinary message
 inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], type and payload of a message before the Welcome
 // [byte], type and payload of a message with sand: a State, or an EditRequest that loads sand. Accepted only when such
-// a message is expected. A field of 8192 × 8192 cells compresses to about 150 MiB. A State of a larger field may be
-// longer (sand::Start::mostStateBytes()).
+// a message is expected. A field of 8192 × 8192 cells compresses to about 150 MiB. Those of a larger field may be
+// longer (sand::Start::mostStateBytes(), sand::Rules::stepLimits()).
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
-static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits");
+static_assert(static_cast<std::size_t>(sand::kMaxSandBytes) + kMaxMessage <= kMaxState, "a load fits");
 inline constexpr std::size_t kMaxReason = 512;  // [byte] of the reason in a Refusal or a Bye; the rest is cut off
 inline constexpr std::size_t kMaxCatchUp = 16;  // [step] in one CatchUp; a step takes at most about 1.5 KiB
 // [ns], silence of the other side after which either end drops the link. Each end sends a message once a second or more

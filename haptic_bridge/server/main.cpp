@@ -195,6 +195,8 @@ Service serviceOf(const ServerOptions& options, const scene::Scene& scene, asio:
     service.switchOn = [&hand] { hand.switchOn(); };
     service.tests = options.tests;
     service.mostState = std::max(kMaxState, static_cast<std::size_t>(scene.mostStateBytes()));
+    service.mostLoad =
+        std::max(kMaxState, static_cast<std::size_t>(scene.rules.stepLimits().mostSandBytes) + kMaxMessage);
     return service;
 }
 

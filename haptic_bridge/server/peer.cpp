@@ -34,7 +34,7 @@ Peer::Peer(const Service& service, Gate& gate, Roster<Peer>& roster, Connection:
       roundTrips_(service.tests) {}
 
 void Peer::start() {
-    heardNs_ = host::monotonicNs();
+    silence_.heard(host::monotonicNs());
     connection_->limit(kMaxGreeting);
     connection_->setMaxIn(kGreetingBytes);
     if (roster_.connections() > kMaxConnections / 2) {
@@ -62,9 +62,12 @@ void Peer::watch() {
         if (error || self->phase_ == Phase::over) {
             return;
         }
-        const std::int64_t silence = host::monotonicNs() - self->heardNs_;
+        const std::int64_t now = host::monotonicNs();
+        if (self->phase_ > Phase::proving) {
+            self->silence_.arrived(self->connection_->bytesIn(), now);
+        }
         const std::int64_t most = self->phase_ <= Phase::proving ? kGreetingNs : kSilenceNs;
-        if (silence > most) {
+        if (self->silence_.lengthNs(now) > most) {
             self->connection_->close(
                 fmt::format("silent for {} s", most / 1'000'000'000),
                 self->phase_ <= Phase::proving ? Connection::Fault(RefusalCode::limit) : std::nullopt);
@@ -86,7 +89,7 @@ void Peer::outOfTurn() { refuse({RefusalCode::garbage, "that message was out of 
 void Peer::ready() {
     phase_ = Phase::linked;
     connection_->expectState(false);
-    connection_->expectLoads(true);
+    connection_->expectLoads(true, service_.mostLoad);
     log(fmt::format("linked, epoch {} from step {}", grant_.epoch, grant_.firstStep));
     connection_->send(Ready{service_.forceCeiling});
     tickTimingTest(service_.tests.after);
@@ -117,7 +120,7 @@ void Peer::step(base::Bytes message, std::uint64_t edit) {
     sent_.lastBytes = message.size();
     if (edit != 0 && edit == grant_.longLoad) {
         grant_.longLoad = 0;
-        connection_->expectLoads(true);
+        connection_->expectLoads(true, service_.mostLoad);
     }
     for (const auto& watcher : roster_.watchers()) {
         watcher->connection_->sendBytes(base::Bytes(message));

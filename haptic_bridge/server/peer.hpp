@@ -8,6 +8,7 @@
 #include <string>
 
 #include "haptic_bridge/link/connection.hpp"
+#include "haptic_bridge/link/silence.hpp"
 #include "haptic_bridge/server/roster.hpp"
 #include "haptic_bridge/server/service.hpp"
 
@@ -96,7 +97,7 @@ private:
     } sent_;  // counts of step messages
     RoundTrips roundTrips_;
     std::string goodbye_;  // reason of the goodbye that is to be sent
-    std::int64_t heardNs_ = 0;
+    Silence silence_;      // of the peer; before it is authenticated, since start()
 };
 
 }  // namespace haptic_bridge

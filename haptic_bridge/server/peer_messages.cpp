@@ -24,7 +24,9 @@ void Peer::receive(Message&& message) {
     if (phase_ == Phase::over || phase_ == Phase::leaving) {
         return;
     }
-    heardNs_ = phase_ <= Phase::proving ? heardNs_ : host::monotonicNs();
+    if (phase_ > Phase::proving) {
+        silence_.heard(host::monotonicNs());
+    }
     const bool passes = std::holds_alternative<Ping>(message) || std::holds_alternative<Bye>(message);
     if (phase_ == Phase::loading && !passes) {
         outOfTurn();
@@ -134,7 +136,7 @@ void Peer::take(EditRequest& request) {
     }
     // One long load at a time: until it is in a step, or until another edit has replaced it.
     grant_.longLoad = isLong(request.edit) ? request.edit.number : 0;
-    connection_->expectLoads(grant_.longLoad == 0);
+    connection_->expectLoads(grant_.longLoad == 0, service_.mostLoad);
     service_.sandThread->edit(std::move(request));
 }
 

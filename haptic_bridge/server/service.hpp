@@ -33,6 +33,7 @@ struct Service {
     TimingTests tests = {};
     LinkSecurity security = {};
     std::size_t mostState = kMaxState;  // longest State of this scene [byte]
+    std::size_t mostLoad = kMaxState;   // longest EditRequest of this scene [byte]
     SandThread* sandThread = nullptr;   // set by Listener::serve()
     /// Returns the part of the scene that has been read, of Loading::kAll. Empty when the scene is read. Until then
     /// `identity` has the versions alone, and peers get Loading in place of Welcome.

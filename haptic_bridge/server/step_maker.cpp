@@ -186,7 +186,7 @@ void StepMaker::makeStep() {
     const bool edited = message.step.edit.any();
     const std::uint64_t edit = message.step.edit.number;
     replica_.apply(message.step);
-    message.step.edit.sand.reset();  // up to 192 MiB, which the master has
+    message.step.edit.sand.reset();  // perhaps hundreds of MiB, which the master has
     message.stateHash = replica_.stateHash();
     output_.step(session_, encode(std::move(message)), edit);
     hand_.publish(replica_, edited);

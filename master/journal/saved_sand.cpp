@@ -90,8 +90,13 @@ private:
 }  // namespace
 
 SandPlace SandPlace::of(const scene::Scene& scene) {
-    return {scene.name,         scene.rules.columns,      scene.rules.rows,
-            scene.rules.aspect, scene.terrain.cellSize(), scene.rules.siteDigest()};
+    return {scene.name,
+            scene.rules.columns,
+            scene.rules.rows,
+            scene.rules.aspect,
+            scene.terrain.cellSize(),
+            scene.rules.siteDigest(),
+            scene.rules.stepLimits().mostSandBytes};
 }
 
 bool isSaveName(std::string_view name) {
@@ -105,9 +110,9 @@ std::filesystem::path saveFile(const std::filesystem::path& session, std::string
 }
 
 void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
-    if (saved.sand.size() > sand::kMaxSandBytes) {
+    if (saved.sand.size() > static_cast<std::size_t>(saved.place.mostBytes)) {
         throw base::InputError(fmt::format("{}: {} bytes of sand could not be loaded again, {} is the most",
-                                           file.string(), saved.sand.size(), sand::kMaxSandBytes));
+                                           file.string(), saved.sand.size(), saved.place.mostBytes));
     }
     try {
         host::makeFolders(file.parent_path());
@@ -128,10 +133,11 @@ SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& plac
         throw base::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), opened.error()));
     }
     try {
-        if (opened.size() > sand::kMaxSandBytes + kMostAround) {
+        const std::size_t most = static_cast<std::size_t>(place.mostBytes) + kMostAround;
+        if (opened.size() > most) {
             throw base::FormatError(fmt::format("{} bytes are more than sand can be", opened.size()));
         }
-        const std::optional<base::Bytes> bytes = opened.read(sand::kMaxSandBytes + kMostAround);
+        const std::optional<base::Bytes> bytes = opened.read(most);
         if (!bytes || bytes->empty()) {
             throw base::FormatError(bytes ? "is empty" : "cannot be read");
         }

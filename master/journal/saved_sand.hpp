@@ -20,6 +20,8 @@ struct SandPlace {
     std::int32_t columns = 0, rows = 0, aspect = 0;
     double cellSize = 0;       // [scene unit]
     std::uint64_t ground = 0;  // Rules::siteDigest()
+    /// Largest size of its sand in a step, sand::StepLimits::mostSandBytes [byte]. Not in the file.
+    std::int64_t mostBytes = sand::kMaxSandBytes;
 
     static SandPlace of(const scene::Scene& scene);
 

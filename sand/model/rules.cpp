@@ -19,7 +19,22 @@ std::uint64_t Rules::digest() const {
     return XXH3_64bits_withSeed(bytes.data(), bytes.size(), kAlgorithmVersion);
 }
 
-StepLimits Rules::stepLimits() const { return tin == 0 ? StepLimits{} : StepLimits{0, 0, kMostSubstepsOfTin}; }
+StepLimits Rules::stepLimits() const {
+    if (tin != 0) {
+        return {0, 0, kMostSubstepsOfTin};
+    }
+    StepLimits limits;
+    limits.mostSandBytes = std::max(kMaxSandBytes, mostBytesOf(3));
+    return limits;
+}
+
+std::int64_t Rules::mostBytesOf(int numbers) const {
+    // Messages and records state their length in 32 bits, and hold other data beside the sand.
+    constexpr std::int64_t kMost = (std::int64_t{1} << 32) - (1 << 26);
+    // Numbers that cannot be compressed take a little more than their four bytes. With the ghost cells.
+    const std::int64_t cells = (std::int64_t{columns} + 2) * (std::int64_t{rows} + 2);
+    return std::min((std::int64_t{numbers} * 4 + 1) * cells + (1 << 20), kMost);
+}
 
 std::int64_t Rules::mostSubsteps() const {
     const std::int64_t side = 2 * std::int64_t{tuning.tool.radius / kProbePerCell} + 2;  // [cell], with any heading

@@ -40,10 +40,14 @@ constexpr auto valuesOf(Rim) { return std::array{base::Named{Rim::closed, "close
 /// costs more, because its outline goes into the mesh and out of it. `sandwall-bench bounds` measures them.
 inline constexpr std::int64_t kMostSubsteps = 1 << 21, kMostSubstepsOfTin = 1 << 14;
 
+/// Largest size of the compressed sand in a load, unless a height field can need more (Rules::stepLimits()) [byte].
+inline constexpr std::int64_t kMaxSandBytes = std::int64_t{192} << 20;
+
 /// Limits of the numbers that a step states in bytes.
 struct StepLimits {
     std::int32_t leastSweeps = 1, mostSweeps = kMostSweeps;
-    std::int64_t mostSubsteps = kMostSubsteps;  // of its path
+    std::int64_t mostSubsteps = kMostSubsteps;   // of its path
+    std::int64_t mostSandBytes = kMaxSandBytes;  // of a load
 };
 
 /// The rules by which every replica computes its sand, as numbers. The process that loads the scene derives them once
@@ -85,6 +89,9 @@ struct Rules {
     /// Returns what a step of this sand may state. Steps of a TIN state no sweeps, because all of its sweeps run in one
     /// step: the fluxes between two of them are no state.
     [[nodiscard]] StepLimits stepLimits() const;
+    /// Returns an upper bound of the compressed bytes of so many numbers for each cell of a height field, at most
+    /// 2^32 - 2^26 [byte]. Saved sand has three: the height, and the fluxes through two faces.
+    [[nodiscard]] std::int64_t mostBytesOf(int numbers) const;
     /// Returns the length of a sub-step of the tool along every axis [probe unit].
     [[nodiscard]] std::int32_t substepLength() const { return tin == 0 ? substepOnGrid(tuning.tool) : kProbePerCell; }
     /// Returns how many sub-steps the path of a step may have with the tool of these rules, at least 1. A replica

@@ -52,11 +52,7 @@ Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
     if (kind == Edit::tune) {
         edit.tuning = base::read<Tuning>(reader);
     } else if (kind == Edit::load) {
-        // Replica::apply() checks the sand itself, because only the replica knows the field.
         const auto sand = reader.getBlock();
-        if (sand.size() > kMaxSandBytes) {
-            throw base::FormatError("sand of " + std::to_string(sand.size()) + " bytes");
-        }
         edit.sand = std::make_shared<const base::Bytes>(sand.begin(), sand.end());
     }
     return edit;
@@ -167,6 +163,10 @@ std::string Step::refusal(const StepLimits& limits) const {
                (limits.mostSweeps == 0
                     ? "none"
                     : std::to_string(limits.leastSweeps) + " to " + std::to_string(limits.mostSweeps));
+    }
+    if (const auto bytes = static_cast<std::int64_t>(edit.sand ? edit.sand->size() : 0); bytes > limits.mostSandBytes) {
+        return step + " loads " + std::to_string(bytes) + " bytes of sand; a step of this sand loads at most " +
+               std::to_string(limits.mostSandBytes);
     }
     // The way to the first point is not among them, because only a replica knows where the tool is.
     if (const std::int64_t substeps = substepsOf(*this, {}, false, kProbePerCell) - 1; substeps > limits.mostSubsteps) {

@@ -17,9 +17,6 @@ namespace sand {
 inline constexpr std::size_t kMaxPathPoints = 64;           // most points in one step
 inline constexpr std::size_t kMostStepsOfAFrame = 1 << 20;  // in a frame message, and in a record of the journal
 
-/// Largest size of the compressed sand in a load [byte].
-inline constexpr std::size_t kMaxSandBytes = 192U << 20;
-
 /// An operator's change to the sand: its number, kind and data.
 struct Edit {
     enum class Kind : std::uint8_t {
@@ -59,8 +56,8 @@ inline constexpr int kEdits = static_cast<int>(valuesOf(Edit::none).size()) + 1;
 
 /// Writes number and data of an edit, without its kind.
 void encodeDetails(const Edit& edit, base::ByteWriter& writer);
-/// Reads number and data of an edit of this `kind`. Throws base::FormatError for an invalid tuning, truncated bytes, or
-/// more than kMaxSandBytes of sand. Replica::apply() checks the sand itself, because only it knows the field.
+/// Reads number and data of an edit of this `kind`. Throws base::FormatError for an invalid tuning or truncated bytes.
+/// Step::refusal() checks the size of the sand, and Replica::apply() the sand itself, because only they know the field.
 [[nodiscard]] Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader);
 
 /// The only thing that changes sand: the path of the hand since the step before, and an operator's edit.
@@ -87,8 +84,8 @@ struct Step {
     /// Reads what put() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points or
     /// kMostSweeps sweeps, and for a coordinate beyond kMaxProbe.
     void get(base::ByteReader& reader);
-    /// Returns why no step of sand with these limits has so many sweeps or so long a path, or an empty text. Call it
-    /// for each step that comes from a network or a file, with Rules::stepLimits().
+    /// Returns why a step of sand with these limits cannot have this number of sweeps, path or load. Returns an empty
+    /// text if it can. Call it for each step that comes from a network or a file, with Rules::stepLimits().
     [[nodiscard]] std::string refusal(const StepLimits& limits) const;
     friend bool operator==(const Step&, const Step&) = default;
 };

@@ -128,6 +128,27 @@ TEST_F(SavedSandFile, OfAnotherSceneIsRefusedWithWhatDiffers) {
     expectComplaint(other, "with other cells or other rock");
 }
 
+// Sand that was saved can be loaded again, up to the limit of a step of this field.
+TEST_F(SavedSandFile, IsBoundedByTheLimitOfALoad) {
+    SavedSand saved = sand();
+    saved.place.mostBytes = static_cast<std::int64_t>(saved.sand.size());
+    master::writeSavedSand(file_, saved);
+    const auto read = sand::Replica(scene_).sandReader();
+    EXPECT_EQ(master::readSavedSand(file_, saved.place, read).sand, saved.sand);
+    --saved.place.mostBytes;
+    try {
+        master::writeSavedSand(file_, saved);
+        ADD_FAILURE() << "written";
+    } catch (const base::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find(" bytes of sand could not be loaded again, "), std::string::npos)
+            << error.what();
+    }
+    saved.place.mostBytes = 0;
+    std::filesystem::resize_file(file_, 1 << 20);
+    EXPECT_THROW((void)master::readSavedSand(file_, saved.place, read), base::InputError);
+    EXPECT_EQ(SandPlace::of(scene_).mostBytes, scene_.rules.stepLimits().mostSandBytes);
+}
+
 TEST_F(SavedSandFile, ThatIsNotThereOrCannotBeMadeIsOneLine) {
     expectComplaint(scene_, "No such file or directory; nothing was loaded");
     std::ofstream(folder_ / "saves") << "no folder";

@@ -43,6 +43,18 @@ Rules someRules() {
             .tin = 0x1234};
 }
 
+TEST(Rules, ALoadMayHaveAsMuchSandAsTheFieldCanNeed) {
+    const auto mostOf = [](std::int32_t side, std::uint64_t tin) {
+        return Rules{.columns = side, .rows = side, .tin = tin}.stepLimits().mostSandBytes;
+    };
+    EXPECT_EQ(mostOf(512, 0), sand::kMaxSandBytes);
+    EXPECT_EQ(mostOf(10'012, 0), 13LL * 10'014 * 10'014 + (1 << 20));
+    EXPECT_EQ(mostOf(10'012, 7), sand::kMaxSandBytes) << "a TIN has few vertices";
+    const Rules largest{.columns = sand::kMaxSide, .rows = sand::kMaxSide};
+    EXPECT_EQ(largest.mostBytesOf(6), (std::int64_t{1} << 32) - (1 << 26)) << "a length has 32 bits";
+    EXPECT_EQ(largest.stepLimits().mostSandBytes, largest.mostBytesOf(3));
+}
+
 constexpr std::size_t kSchemeAt = 7 * 4 + 14;  // behind seven numbers and the tool
 
 TEST(Rules, ARefusalNamesTheNumber) {

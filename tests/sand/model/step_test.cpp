@@ -88,6 +88,15 @@ TEST(Step, WithAPathBeyondTheLimitsIsRefusedByName) {
     EXPECT_EQ(step.refusal(limits), "") << "a tool that hovers takes no time of the sand";
 }
 
+TEST(Step, WithALoadBeyondTheLimitsIsRefusedByName) {
+    sand::StepLimits limits;
+    limits.mostSandBytes = 10;
+    sand::Step step{.number = 7, .edit = sand::Edit::loaded(base::Bytes(10)), .sweeps = 1};
+    EXPECT_EQ(step.refusal(limits), "");
+    step.edit = sand::Edit::loaded(base::Bytes(11));
+    EXPECT_EQ(step.refusal(limits), "step 7 loads 11 bytes of sand; a step of this sand loads at most 10");
+}
+
 // Journals and messages have exactly these bytes.
 TEST(Step, TakesTheseBytes) {
     sand::Step step{
