@@ -45,17 +45,19 @@ add_node() {
 
 # The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
 # events of sessions against the schemas. They make and check a Debian package, and move pointer and windows with xdotool and
-# openbox. They switch the monitors of Xorg's dummy driver. The report draws its curves with matplotlib. A bar separates
-# packages that replace each other: the script installs the first that this Debian has.
+# openbox. They switch the monitors of Xorg's dummy driver. scripts/test.sh builds faster with ccache. The report draws its
+# curves with matplotlib, and ffmpeg makes a video of a film's pictures. A bar separates packages that replace each other: the
+# script installs the first that this Debian has.
 for option in "$@"; do
     case "$option" in
         --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian openbox \
-            universal-ctags xdotool xserver-xorg-core xserver-xorg-video-dummy) ;;
+            universal-ctags xdotool xserver-xorg-core xserver-xorg-video-dummy ccache) ;;
         --with-web) tools+=(emscripten); add_node ;;                      # the web page; docs/web.md
         --with-browsers) tools+=(chromium firefox-esr xauth) ;;         # its tests in browsers
         --with-report) tools+=(python3-matplotlib) ;;
+        --with-film) tools+=(ffmpeg) ;;                                  # docs/film.md
         --for-arm64) cross=arm64; tools+=(g++-aarch64-linux-gnu qemu-user) ;; # for cmake/Arm64.cmake; docs/testing.md
-        *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-web] [--with-browsers] [--with-report] [--for-arm64]" >&2; exit 2 ;;
+        *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-web] [--with-browsers] [--with-report] [--with-film] [--for-arm64]" >&2; exit 2 ;;
     esac
 done
 packages=("${tools[@]}" "${libraries[@]/%/${cross:+:$cross}}")

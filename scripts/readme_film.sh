@@ -12,7 +12,7 @@ while [[ $# -gt 0 ]]; do
         *) echo "usage: scripts/readme_film.sh [--out DIR]" >&2; exit 2 ;;
     esac
 done
-command -v ffmpeg >/dev/null || { echo "readme_film.sh: ffmpeg is missing; run: apt-get install ffmpeg" >&2; exit 2; }
+command -v ffmpeg >/dev/null || { echo "readme_film.sh: ffmpeg is missing; run scripts/install_dependencies.sh --with-film" >&2; exit 2; }
 
 cd "$root"
 scripts/install_dependencies.sh

@@ -5,11 +5,12 @@ import pathlib
 import shutil
 import subprocess
 
-from base import console, marked_answer
+from base import console, layout, marked_answer
 from base.bad_input import BadInput
 
 PATTERN = "frame_%06d.png"  # the names that the master gives to the pictures
 FRAMES = "frame_[0-9]*.png"
+INSTALL = "apt-get install ffmpeg" if layout.INSTALLED else "scripts/install_dependencies.sh --with-film"
 
 
 def encode(folder, frames_per_second):
@@ -20,7 +21,7 @@ def encode(folder, frames_per_second):
     folder = pathlib.Path(folder)
     frames = sum(1 for _ in folder.glob(FRAMES))
     if shutil.which("ffmpeg") is None:
-        console.OUT.line(f"{frames} pictures in {folder}; for film.mp4 run apt-get install ffmpeg, then this command again")
+        console.OUT.line(f"{frames} pictures in {folder}; for film.mp4 ffmpeg is missing: run {INSTALL}, then this command again")
         return
     film = folder / "film.mp4"
     if film.is_symlink() or (film.exists() and not film.is_file()):

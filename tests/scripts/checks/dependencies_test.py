@@ -79,6 +79,12 @@ class Dependencies(unittest.TestCase):
         self.assertIn("libglm-dev", tools.split())
         self.assertEqual((self.folder / "added").read_text(), "arm64\n")
 
+    def test_a_film_and_a_second_build_need_an_option_each(self):
+        plain = self.asked(installed="").split()
+        for package, option in (("ffmpeg", "--with-film"), ("ccache", "--with-tests")):
+            self.assertNotIn(package, plain)
+            self.assertIn(package, self.asked(option, installed="").split())
+
     def web(self, conflicts="", **versions):
         """Runs --with-web where only these programs of node are there. Returns its status, its line, and what it asks for."""
         path = self.folder / "path"

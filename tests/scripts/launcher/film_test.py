@@ -57,7 +57,7 @@ class Film(LauncherTest):
         status, printed, error = self.film()
         self.assertEqual((status, error), (0, ""))
         self.assertEqual(printed.split("\n")[1],
-                         "3 pictures in out %d; for film.mp4 run apt-get install ffmpeg, then this command again")
+                         "3 pictures in out %d; for film.mp4 ffmpeg is missing: run scripts/install_dependencies.sh --with-film, then this command again")
         self.assertFalse((self.folder / "out %d" / "film.mp4").exists())
 
     def test_with_ffmpeg_there_is_one_file_at_the_films_rate(self):
