@@ -30,6 +30,16 @@ void checkLengths(const EsriGrid& raster, const Options& options);
 void relaxGrid(const Options& options);
 void relaxTin(const Options& options);
 
+/// Result of a run, for printResult().
+struct Result {
+    bool moved = false;   // whether a height has changed
+    bool atRest = false;  // whether no sand would move in another sweep
+    std::int64_t sweeps = 0;
+    double steepest = 0;  // [degree]
+};
+/// Prints one sentence about the result on stderr.
+void printResult(const Options& options, const Result& result);
+
 /// Prints "FILE: metres across (EPSG:32633), …" on stderr.
 void printStatement(const RasterStatement& statement);
 

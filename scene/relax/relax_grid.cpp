@@ -156,9 +156,13 @@ void relaxGrid(const Options& options) {
         host::printLine("warning: {}", warning);
     }
     const std::int64_t volumeBefore = sand.volume();
+    const std::uint64_t hashBefore = sand::grid::TileHash(sand.field).sum();
     const Timed timed = relaxTimed(sand, options);
     writeRaster(sand.toGrid(grid), options.out);
-    fmt::print("{}\n", report(sand, grid, bedrock, options, volumeBefore, timed).dump());
+    const bool moved = hashBefore != sand::grid::TileHash(sand.field).sum();
+    const ordered_json json = report(sand, grid, bedrock, options, volumeBefore, timed);
+    printResult(options, {moved, timed.relaxed.atRest, timed.relaxed.sweeps, json["steepest_deg"]});
+    fmt::print("{}\n", json.dump());
 }
 
 }  // namespace scene::relax

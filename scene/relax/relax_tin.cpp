@@ -115,10 +115,14 @@ void relaxTin(const Options& options) {
         host::printLine("warning: {}", warning);
     }
     const std::int64_t volumeBefore = sand.volume();
+    const std::uint64_t hashBefore = sand::tin::TileHash(sand.layer).update({});
     const Slid slid = slide(sand, options);
     const Mesh mesh = sand.toMesh();
     writeMesh(mesh, options.out);
-    fmt::print("{}\n", reportOf(sand, options, statement, thinned, volumeBefore, slid, mesh).dump());
+    const bool moved = hashBefore != sand::tin::TileHash(sand.layer).update({});
+    const nlohmann::ordered_json json = reportOf(sand, options, statement, thinned, volumeBefore, slid, mesh);
+    printResult(options, {moved, slid.atRest, slid.sweeps, json["steepest_deg"]});
+    fmt::print("{}\n", json.dump());
 }
 
 }  // namespace scene::relax

@@ -14,6 +14,18 @@
 
 namespace scene::relax {
 
+void printResult(const Options& options, const Result& result) {
+    if (!result.moved && result.atRest) {
+        host::printLine(
+            "no sand moved: no slope of {} is steep enough to slide at a talus of {:g} degrees; {} has the same "
+            "heights",
+            options.in, options.talus, options.out);
+    } else {
+        host::printLine("the sand of {} {} after {} sweeps; its steepest slope is {:.1f} degrees", options.out,
+                        result.atRest ? "rests" : "still moves", result.sweeps, result.steepest);
+    }
+}
+
 void printStatement(const RasterStatement& statement) { host::printLine("{}: {}", statement.file, statement.text()); }
 
 nlohmann::ordered_json jsonOf(const RasterStatement& statement) {

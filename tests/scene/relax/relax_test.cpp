@@ -354,6 +354,24 @@ TEST_F(Relax, TheSmallestGridsWork) {
     }
 }
 
+TEST_F(Relax, SaysItsResultInOneSentence) {
+    const auto expect = [&](const std::string& arguments, const std::string& words) {
+        const support::Ran ran = run(arguments);
+        EXPECT_NE(ran.output.find("sandwall-relax: " + words), std::string::npos) << ran.output;
+    };
+    writeGrid("in.asc", 3, 1, {0, 0.1, 0.2});
+    expect("in.asc out.asc --talus 30",
+           "no sand moved: no slope of in.asc is steep enough to slide at a talus of 30 degrees; out.asc has the same "
+           "heights\n");
+    writeGrid("in.asc", 3, 1, {0, 4, 0});
+    expect("in.asc out.asc --talus 45",
+           "the sand of out.asc rests after 3 sweeps; its steepest slope is 40.0 degrees\n");
+    expect("in.asc out.asc --talus 1 --sweeps 2", "the sand of out.asc still moves after 2 sweeps; ");
+    write("in.csv", "0 0 0\n9 0 0\n0 9 0\n9 9 1\n");
+    expect("in.csv out.ply --talus 30", "no sand moved: no slope of in.csv is steep enough to slide");
+    expect("in.csv out.ply --talus 1", "the sand of out.ply rests after ");
+}
+
 TEST_F(Relax, AngleZeroLevelsTheSand) {
     writeGrid("in.asc", 8, 1, {4, 0, 0, 0, 0, 0, 0, 0});
     const auto json = relax("in.asc out.asc --talus 0");
