@@ -17,12 +17,15 @@ namespace {
 
 struct Options {
     std::string wall, scene, stereo, svg, desk;
-    bool mono = false, ranks = false, hosts = false, outputs = false;
+    bool mono = false, ranks = false, hosts = false, outputs = false, cells = false;
 };
 
 int check(const Options& options) {
+    if (options.cells && options.scene.empty()) {
+        throw base::InputError("--cells: name a scene with --scene");
+    }
     if (!options.scene.empty()) {
-        fmt::print("{}", walls::describeScene(options.scene));
+        fmt::print("{}", options.cells ? walls::cellsOfScene(options.scene) : walls::describeScene(options.scene));
         if (options.wall.empty()) {
             return 0;
         }
@@ -60,6 +63,7 @@ int main(int argc, char** argv) {
     line.option("WALL", options.wall, "a wall file (docs/wall_files.md)");
     line.option("--scene", options.scene, "check this scene file, too, and print units and no data of its terrain");
     const host::Option stereo = line.option("--stereo", options.stereo, "check it as shown in this mode");
+    line.flag("--cells", options.cells, "print only columns, rows and cell size [scene unit] of the scene");
     line.flag("--mono", options.mono, "check it as shown without stereo").excludes(stereo);
     line.option("--desk", options.desk,
                 "check it as shown in windows on this area of a desktop, instead of where its file places them")

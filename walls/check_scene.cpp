@@ -29,4 +29,9 @@ std::string describeScene(const std::string& file) {
     return text;
 }
 
+std::string cellsOfScene(const std::string& file) {
+    const scene::Scene scene = scene::loadScene(file);
+    return fmt::format("{} {} {}\n", scene.rules.columns, scene.rules.rows, scene.terrain.cellSize());
+}
+
 }  // namespace walls

@@ -10,4 +10,8 @@ namespace walls {
 /// warnings. Throws base::InputError if a session could not load it.
 [[nodiscard]] std::string describeScene(const std::string& file);
 
+/// Loads a scene file and returns a line for programs: columns, rows and cell size [scene unit]. Measures no time.
+/// Throws base::InputError if a session could not load it.
+[[nodiscard]] std::string cellsOfScene(const std::string& file);
+
 }  // namespace walls

@@ -113,8 +113,9 @@ public:
         described.warnings = raster.warnings();
         return described;
     }
-    [[nodiscard]] EsriGrid readImage(const std::filesystem::path& file, const RasterCheck& check) const override {
-        const GdalRaster raster(file);
+    [[nodiscard]] EsriGrid readImage(const std::filesystem::path& file, Colours colours,
+                                     const RasterCheck& check) const override {
+        const GdalRaster raster(file, {}, colours);
         if (raster.isWhiteZero()) {
             raster.fail(
                 "its 0 is white, so that it could be the lowest or the highest; invert it, or read its numbers as "
@@ -159,7 +160,7 @@ public:
 }  // namespace
 }  // namespace scene
 
-extern "C" const scene::Importer* sandwallImport7() {
+extern "C" const scene::Importer* sandwallImport8() {
     static const scene::GdalImporter kImporter;
     return &kImporter;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,20 +16,31 @@ namespace scene {
 namespace {
 
 constexpr int kStripePixels = 1 << 20;  // 9 MiB as doubles with their mask
+
+// Weights of red, green and blue in the brightness of ITU-R BT.709, times 10,000. They are whole, so that white is
+// exactly the largest number.
+constexpr std::array kWeights{2126.0, 7152.0, 722.0};
+constexpr double kWeightOfWhite = 10000;
+
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 class PixelReader {
 public:
     PixelReader(const GdalRaster& raster, const RasterCheck& check)
-        : raster_(raster), check_(check), isPng_(raster.isPng()), heights_(raster.numberSize()) {
+        : raster_(raster),
+          check_(check),
+          isPng_(raster.isPng() && !raster.isColoured()),
+          heights_(raster.numberSize()) {
         const int flags = GDALGetMaskFlags(raster.band());
-        if (raster.isSignedByte() || (isPng_ && (flags & GMF_NODATA) != 0)) {
+        const bool coloured = raster.isColoured();
+        if ((!coloured && raster.isSignedByte()) || (isPng_ && (flags & GMF_NODATA) != 0)) {
             // GDAL's mask would compare the number without its sign, or a transparent grey as GDAL has read it.
             int declared = 0;
             const double noData = GDALGetRasterNoDataValue(raster.band(), &declared);
             noData_ = declared == 0 ? std::nullopt : std::optional(noData);
         }
-        if (!noData_ && (flags & GMF_ALL_VALID) == 0) {
+        // A colour without data is no data of one band, and not of the brightness.
+        if (!noData_ && (flags & GMF_ALL_VALID) == 0 && !(coloured && (flags & GMF_NODATA) != 0)) {
             mask_ = GDALGetMaskBand(raster.band());
         }
         GDALGetBlockSize(raster.band(), &blockColumns_, &blockRows_);
@@ -47,14 +59,15 @@ public:
 
 private:
     void readStripes() {
-        const bool signedBytes = raster_.isSignedByte();
+        const bool signedBytes = !raster_.isColoured() && raster_.isSignedByte();
         std::vector<double> numbers;
         for (int row = 0, end = 0; row < raster_.rows(); row = end) {
             end = endOfStripe(row);
             numbers.resize(static_cast<std::size_t>(end - row) * static_cast<std::size_t>(raster_.columns()));
-            if (GDALRasterIO(raster_.band(), GF_Read, 0, row, raster_.columns(), end - row, numbers.data(),
-                             raster_.columns(), end - row, GDT_Float64, 0, 0) != CE_None) {
-                raster_.failToRead();
+            if (raster_.isColoured()) {
+                readBrightness(row, end, numbers);
+            } else {
+                readBand(raster_.band(), row, end, numbers);
             }
             if (signedBytes) {
                 for (double& number : numbers) {
@@ -65,6 +78,28 @@ private:
             if (end % blockRows_ == 0) {
                 dropBlocks();
             }
+        }
+    }
+
+    /// Reads the numbers of rows [row, end) of a band.
+    void readBand(GDALRasterBandH band, int row, int end, std::vector<double>& numbers) const {
+        if (GDALRasterIO(band, GF_Read, 0, row, raster_.columns(), end - row, numbers.data(), raster_.columns(),
+                         end - row, GDT_Float64, 0, 0) != CE_None) {
+            raster_.failToRead();
+        }
+    }
+
+    void readBrightness(int row, int end, std::vector<double>& numbers) const {
+        std::vector<double> one(numbers.size());
+        std::fill(numbers.begin(), numbers.end(), 0.0);
+        for (std::size_t colour = 0; colour < kWeights.size(); ++colour) {
+            readBand(GDALGetRasterBand(raster_.dataset(), static_cast<int>(colour) + 1), row, end, one);
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+                numbers[i] += kWeights[colour] * one[i];
+            }
+        }
+        for (double& number : numbers) {
+            number /= kWeightOfWhite;
         }
     }
 
@@ -79,6 +114,9 @@ private:
     /// Frees the blocks that GDAL has read. Its cache may otherwise hold the whole raster.
     void dropBlocks() const {
         (void)GDALFlushRasterCache(raster_.band());
+        for (int colour = 1; raster_.isColoured() && colour < static_cast<int>(kWeights.size()); ++colour) {
+            (void)GDALFlushRasterCache(GDALGetRasterBand(raster_.dataset(), colour + 1));
+        }
         if (mask_ != nullptr) {
             (void)GDALFlushRasterCache(mask_);
         }

@@ -28,6 +28,8 @@ constexpr const char* kDrivers[] = {
     "netCDF", "NITF",     "ROI_PAC",  "ILWIS",    "FIT",  "HF2",         nullptr,
 };
 
+constexpr int kColours = 3;  // of a photo
+
 fs::path checked(const fs::path& file) {
     std::error_code none;
     if (!fs::is_regular_file(file, none)) {
@@ -59,7 +61,7 @@ std::string withoutPath(std::string complaint, const fs::path& file) {
 
 }  // namespace
 
-GdalRaster::GdalRaster(const fs::path& file, const fs::path& inMemory)
+GdalRaster::GdalRaster(const fs::path& file, const fs::path& inMemory, Colours colours)
     : name_(file.string()),
       dataset_(GDALOpenEx((inMemory.empty() ? checked(file) : inMemory).c_str(),
                           GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
@@ -73,7 +75,7 @@ GdalRaster::GdalRaster(const fs::path& file, const fs::path& inMemory)
         names[0] = file;  // messages name it as the user does
     }
     steady_ = SteadyFiles(names);
-    chooseBand();
+    chooseBand(colours);
     checkClaims(*this);
     const auto bytes = static_cast<double>(RasterSize{columns(), rows(), numberSize()}.bytes());
     if (bytes > kMostRasterBytes) {
@@ -89,7 +91,7 @@ void GdalRaster::fail(const std::string& message) const { throw base::InputError
 
 void GdalRaster::failToRead() const { fail("its pixels cannot be read: " + session_.complaint()); }
 
-void GdalRaster::chooseBand() {
+void GdalRaster::chooseBand(Colours colours) {
     int values = 0;
     for (int number = GDALGetRasterCount(dataset_.get()); number >= 1; --number) {
         GDALRasterBandH band = GDALGetRasterBand(dataset_.get(), number);
@@ -103,7 +105,8 @@ void GdalRaster::chooseBand() {
     }
     scale_ = GDALGetRasterScale(band_, nullptr);
     offset_ = GDALGetRasterOffset(band_, nullptr);
-    if (values != 1) {
+    coloured_ = colours == Colours::brightness && values == kColours && isRedGreenBlue();
+    if (values != 1 && !coloured_) {
         fail(fmt::format("has {} bands, but heights are only one; choose it: gdal_translate -b NUMBER {} dem.tif",
                          values, fs::path(name_).filename().string()));
     }
@@ -140,6 +143,16 @@ void GdalRaster::failForVariables() const {
                      names.size(), variables, names.size() > kMost ? ", ..." : "", first));
 }
 
+bool GdalRaster::isRedGreenBlue() const {
+    constexpr GDALColorInterp kOrder[kColours] = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand};
+    for (int colour = 0; colour < kColours; ++colour) {
+        if (GDALGetRasterColorInterpretation(GDALGetRasterBand(dataset_.get(), colour + 1)) != kOrder[colour]) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool GdalRaster::isWhiteZero() const {
     const char* const mark = GDALGetMetadataItem(dataset_.get(), "MINISWHITE", "IMAGE_STRUCTURE");
     return mark != nullptr && std::string_view(mark) == "YES";
@@ -164,7 +177,7 @@ bool GdalRaster::isSignedByte() const {
 NumberSize GdalRaster::numberSize() const {
     const GDALDataType type = GDALGetRasterDataType(band_);
     const bool shortInteger = GDALDataTypeIsInteger(type) != 0 && GDALGetDataTypeSizeBits(type) <= 16;
-    return type == GDT_Float32 || shortInteger ? NumberSize::floats : NumberSize::doubles;
+    return !coloured_ && (type == GDT_Float32 || shortInteger) ? NumberSize::floats : NumberSize::doubles;
 }
 
 std::vector<fs::path> GdalRaster::files() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/gdal/gdal_session.hpp"
+#include "scene/import/importer.hpp"
 #include "scene/import/raster_check.hpp"
 #include "scene/import/steady_files.hpp"
 
@@ -17,8 +18,10 @@ namespace scene {
 /// base::InputError, whose message begins with the file.
 class GdalRaster {
 public:
-    /// Opens `inMemory` in place of `file`, unless it is empty. Messages name `file`.
-    explicit GdalRaster(const std::filesystem::path& file, const std::filesystem::path& inMemory = {});
+    /// Opens `inMemory` in place of `file`, unless it is empty. Messages name `file`. With Colours::brightness the file
+    /// may have red, green and blue bands, which pixels() weighs.
+    explicit GdalRaster(const std::filesystem::path& file, const std::filesystem::path& inMemory = {},
+                        Colours colours = Colours::none);
 
     [[nodiscard]] int columns() const { return GDALGetRasterXSize(dataset_.get()); }
     [[nodiscard]] int rows() const { return GDALGetRasterYSize(dataset_.get()); }
@@ -35,6 +38,8 @@ public:
     /// none.
     [[nodiscard]] std::optional<double> noData() const;
     [[nodiscard]] bool isPng() const { return driver() == "PNG"; }
+    /// Returns whether band() is the first of red, green and blue, whose brightness counts.
+    [[nodiscard]] bool isColoured() const { return coloured_; }
     /// Returns whether the numbers are bytes with a sign, which GDAL before 3.7 reads without it.
     [[nodiscard]] bool isSignedByte() const;
     /// Returns the size in which the numbers of the band are exact.
@@ -57,15 +62,18 @@ public:
     [[noreturn]] void failToRead() const;
 
 private:
-    /// Chooses the one band that is not a mask of opacity.
-    void chooseBand();
+    /// Chooses the one band that is not a mask of opacity, or the first one of red, green and blue.
+    void chooseBand(Colours colours);
     [[noreturn]] void failForVariables() const;
+    /// Returns whether the first three bands are red, green and blue.
+    [[nodiscard]] bool isRedGreenBlue() const;
     [[nodiscard]] bool isScaled() const { return scale_ != 1 || offset_ != 0; }
 
     std::string name_;
     GdalSession session_;
     Dataset dataset_;
     GDALRasterBandH band_ = nullptr;
+    bool coloured_ = false;          // whether band_ is the first of red, green and blue
     double scale_ = 1, offset_ = 0;  // of the band
     SteadyFiles steady_;             // the files of the raster as they were opened
 };

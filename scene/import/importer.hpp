@@ -25,6 +25,9 @@ struct RasterDescription {
     std::vector<std::string> warnings;  // of GDAL, one line each, with the file's name
 };
 
+/// What readImage() does with the colours of a photo.
+enum class Colours { none /* refuses them */, brightness /* takes their brightness */ };
+
 /// Functions of the module that loads GDAL and muParser. Call them from one thread at a time.
 ///
 /// All of them throw base::InputError with one line. It names the file, or the place in the function's text, the cause,
@@ -47,8 +50,10 @@ public:
     [[nodiscard]] virtual RasterDescription readUnits(const std::filesystem::path& file) const = 0;
 
     /// Reads one band of 8 or 16 bits without a place. Heights are shares of the largest number, from 0 to 1, and cells
-    /// have side 1. Calls `check` as readDem() does.
-    [[nodiscard]] virtual EsriGrid readImage(const std::filesystem::path& file, const RasterCheck& check) const = 0;
+    /// have side 1. With Colours::brightness it also takes red, green and blue bands, and weighs them as ITU-R BT.709
+    /// does. Calls `check` as readDem() does.
+    [[nodiscard]] virtual EsriGrid readImage(const std::filesystem::path& file, Colours colours,
+                                             const RasterCheck& check) const = 0;
 
     /// Returns the function's values at the middle of every cell. Refuses a value that is not finite, with x and y.
     /// Calls check.read().
@@ -70,7 +75,7 @@ public:
 inline constexpr double kMostRasterBytes = 2147483648.0;
 
 /// Symbol that the module defines, with C linkage. It returns the one object, which is never deleted.
-inline constexpr const char* kImportSymbol = "sandwallImport7";
+inline constexpr const char* kImportSymbol = "sandwallImport8";
 using GetImporter = const Importer*();
 
 /// Loads sandwall-import.so from the folder of this program. Returns the same object at every call. Only this function

@@ -43,7 +43,8 @@ EsriGrid readImage(const host::TomlTable& terrain, const RasterCheck& check) {
         terrain.fail("high", fmt::format("high must be above low = {}, got {}", low, high));
     }
     const double width = terrain.numberOr("width", 2.0, host::kPositive);
-    EsriGrid image = importerFor(terrain).readImage(fileOf(terrain), check);
+    const Colours colours = terrain.flagOr("brightness", false) ? Colours::brightness : Colours::none;
+    EsriGrid image = importerFor(terrain).readImage(fileOf(terrain), colours, check);
     image.cellSize = width / image.columns;
     image.heights.multiply(high - low, low);
     return image;

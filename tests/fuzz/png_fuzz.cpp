@@ -25,7 +25,7 @@ void readPicture(const std::string& file) {
 
 void readHeights(const std::string& file) {
     static const scene::Importer& kImporter = scene::loadImporter("the fuzzer of PNG");
-    const scene::EsriGrid grid = kImporter.readImage(file, scene::fitsMemory(file, kMostBytes));
+    const scene::EsriGrid grid = kImporter.readImage(file, scene::Colours::none, scene::fitsMemory(file, kMostBytes));
     for (const double height : grid.heights) {
         fuzz::require(std::isnan(height) || (height >= 0 && height <= 1), "a picture has a height beyond its white");
     }

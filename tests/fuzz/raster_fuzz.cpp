@@ -64,7 +64,8 @@ SANDWALL_FUZZER(raster) {
         kScratch.path() / (std::string_view(names.beside) == "r.ers" ? names.beside : names.raster);
     fuzz::takeOrRefuse([&] { (void)kImporter.readUnits(file); });
     fuzz::takeOrRefuse([&] {
-        const scene::EsriGrid picture = kImporter.readImage(file, scene::fitsMemory(file, kMostRaster));
+        const scene::EsriGrid picture =
+            kImporter.readImage(file, scene::Colours::brightness, scene::fitsMemory(file, kMostRaster));
         for (const double height : picture.heights) {
             fuzz::require(!std::isinf(height), "a picture has an infinite height");
         }

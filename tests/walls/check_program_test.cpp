@@ -44,6 +44,16 @@ TEST(CheckProgram, ExitsWithTwoAndOneLineForWhatItCannotUse) {
     }
 }
 
+TEST(CheckProgram, PrintsTheCellsOfASceneAlone) {
+    const std::filesystem::path scene = std::filesystem::path(testing::TempDir()) / "sandwall_check_cells.toml";
+    std::ofstream(scene) << "[field]\ncolumns = 48\nrows = 20\nwidth = 12\n[terrain]\n[tool]\nradius = 0.5\n";
+    const support::Ran ran = support::runProgram("sandwall-check", "--cells --scene " + scene.string());
+    EXPECT_EQ(ran.status, 0);
+    EXPECT_EQ(ran.output, "48 20 0.25\n");
+    EXPECT_EQ(support::runProgram("sandwall-check", "--cells").output,
+              "sandwall-check: --cells: name a scene with --scene\n");
+}
+
 TEST(CheckProgram, PrintsWhatAStepOfTheToolCostsAbout) {
     const std::filesystem::path scene = std::filesystem::path(testing::TempDir()) / "sandwall_check_cost.toml";
     for (const auto& [field, part] :

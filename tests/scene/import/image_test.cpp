@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <png.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "scene/import/importer.hpp"
@@ -70,7 +72,7 @@ TEST_F(Import, APictureIsReadAlikeInterlacedOrNot) {
         }
         for (const bool interlaced : {false, true}) {
             writeGreys(path("t.png"), kColumns, kRows, bits, interlaced, greys);
-            const scene::EsriGrid grid = scene::loadImporter("test").readImage(path("t.png"), {});
+            const scene::EsriGrid grid = scene::loadImporter("test").readImage(path("t.png"), scene::Colours::none, {});
             ASSERT_EQ(grid.columns, kColumns);
             ASSERT_EQ(grid.rows, kRows);
             for (std::size_t i = 0; i < greys.size(); ++i) {
@@ -97,7 +99,7 @@ TEST_F(Import, TheNumberWithoutDataIsTheFiles) {
     writeGreys(path("t.png"), 2, 2, 16, true, {258, 513, 513, 7});
     write("t.png.aux.xml",
           "<PAMDataset><PAMRasterBand band=\"1\"><NoDataValue>513</NoDataValue></PAMRasterBand></PAMDataset>");
-    const scene::EsriGrid grid = scene::loadImporter("test").readImage(path("t.png"), {});
+    const scene::EsriGrid grid = scene::loadImporter("test").readImage(path("t.png"), scene::Colours::none, {});
     EXPECT_EQ(grid.heights[0], 258.0 / 65535);
     EXPECT_TRUE(std::isnan(grid.heights[1]));
     EXPECT_TRUE(std::isnan(grid.heights[2]));
@@ -114,6 +116,36 @@ TEST_F(Import, APictureThatIsCutOffIsOneLine) {
     const std::string line = refusal(kImage);
     EXPECT_TRUE(line.starts_with("t.png: ")) << line;
     EXPECT_GT(line.size(), 20U) << line;
+}
+
+TEST_F(Import, APhotoBecomesItsBrightnessOnlyIfAskedFor) {
+    const std::array<std::uint8_t, 15> pixels{0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255};
+    png_image photo{};
+    photo.version = PNG_IMAGE_VERSION;
+    photo.width = 5;
+    photo.height = 1;
+    photo.format = PNG_FORMAT_RGB;
+    ASSERT_NE(png_image_write_to_file(&photo, path("t.png").c_str(), 0, pixels.data(), 0, nullptr), 0);
+    EXPECT_EQ(refusal(kImage),
+              "t.png: has 3 bands, but heights are only one; choose it: gdal_translate -b NUMBER t.png dem.tif");
+    const scene::EsriGrid grid = scene::loadImporter("test").readImage(path("t.png"), scene::Colours::brightness, {});
+    EXPECT_EQ(grid.heights, (std::vector<double>{0, 1, 2126 * 255.0 / 10000 / 255, 7152 * 255.0 / 10000 / 255,
+                                                 722 * 255.0 / 10000 / 255}));
+    const scene::Scene taken = load(kImage + "brightness = true\n");
+    EXPECT_EQ(taken.terrain.height(1, 0), sand::kUnitsPerCell * 2 / 0.8);
+    // A grey picture is its own brightness, with the key as without it.
+    writeGreys(path("t.png"), 2, 1, 16, false, {258, 65535});
+    EXPECT_TRUE(sameHeights(load(kImage).terrain, load(kImage + "brightness = true\n").terrain));
+    // Bands that are not red, green and blue stay several heights.
+    writeRaster("t.png", {.columns = 2,
+                          .rows = 1,
+                          .heights = {0, 255},
+                          .place = {},
+                          .epsg = 0,
+                          .type = GDT_Byte,
+                          .bands = 3,
+                          .options = {"PHOTOMETRIC=MINISBLACK"}});
+    EXPECT_TRUE(refusal(kImage + "brightness = true\n").starts_with("t.png: has 3 bands, ")) << "a TIFF of three greys";
 }
 
 TEST_F(Import, PicturesThatAreNoHeightMapsSayWhy) {
