@@ -88,11 +88,12 @@ def read_png(file):
 
 
 def write_png(picture, file):
-    """Writes a PNG file of 8-bit RGB without filters."""
+    """Writes a PNG file of 8-bit RGB, or of greys if its rows have one byte a pixel, without filters."""
     def chunk(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
 
-    head = struct.pack(">IIBBBBB", picture.width, picture.height, 8, 2, 0, 0, 0)
+    colours = 0 if len(picture.rows[0]) == picture.width else 2
+    head = struct.pack(">IIBBBBB", picture.width, picture.height, 8, colours, 0, 0, 0)
     rows = zlib.compress(b"".join(b"\0" + row for row in picture.rows))
     pathlib.Path(file).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", rows) + chunk(b"IEND", b""))
 
