@@ -17,7 +17,7 @@ _sandwall() {
         names=$(sandwall list walls 2>/dev/null)
     elif [[ $command == ctl && $COMP_CWORD -eq 3 ]]; then
         names=$(sandwall complete ctl VERB 2>/dev/null) files=
-    elif [[ $before == --scene ]]; then
+    elif [[ $before == --scene || ($command == try && $COMP_CWORD -eq 2 && $word != -*) ]]; then
         names=$(sandwall list scenes 2>/dev/null)
     elif [[ $before == --device ]]; then
         names="$(sandwall list strokes 2>/dev/null | sed 's/^/script:/') $(sandwall complete run --device 2>/dev/null)" files=

@@ -6,12 +6,15 @@ import pathlib
 import shlex
 
 import desk
+from ask.session_report import launcher
 from base import layout
 from base.bad_input import BadInput
 from base.console import print_line
 from job import screens
+from kept import try_choice
 
 DEVICE = "pointer"
+SCENE, WALL = "writing", "desktop"  # of `try`
 ELSEWHERE = ("run `try` in a terminal of a desktop; without one, `run --gl osmesa` draws in memory, and "
              "`run --device script:gis` digs without a mouse")
 
@@ -47,23 +50,42 @@ def print_greeting(wall, scene):
     print_line(f"opening {pathlib.Path(wall).stem} with the scene {pathlib.Path(scene).stem}: dig with the left mouse button; h shows the keys, Escape ends")
 
 
-def session_of(args):
-    """Returns the words of `run` for `try`. Replaces the names in `args` by the paths of their files."""
-    args.wall, args.scene = layout.found("walls", args.wall), layout.found("scenes", args.scene)
-    return ["run", "--here", "--wall", args.wall, "--scene", args.scene, "--device", DEVICE, "--out", args.out]
+def again(args, scene):
+    """Returns the words of the command that continues this session of `try`. Scene and wall are as the user has named them."""
+    words = [launcher(), "try"]
+    if scene != SCENE and (args.out is None or args.scene):
+        words.append(scene)
+    words += ["--as-heights"] if args.as_heights else []
+    words += ["--wall", args.wall] if args.wall != WALL else []
+    return words + (["--out", args.out] if args.out else [])
+
+
+def session_of(args, choice, scene):
+    """Returns the words of `run` for `try`. A session that continues takes its scene from the journal, unless the user names one."""
+    words = ["run", "--here", "--wall", layout.found("walls", args.wall), "--device", DEVICE, "--out", choice.out]
+    if not choice.begins:
+        words.append("--resume")
+    if choice.begins or (args.out and args.scene):
+        words += ["--scene", scene] + (["--as-heights"] if args.as_heights else [])
+    return words
 
 
 def print_journal(out, wall):
+    """Says where the journal is, and which command makes a film of it. `wall` is as the user has named it."""
     journal = pathlib.Path(out) / "session.journal"
-    command = [layout.PROGRAM, "film", str(journal), "--wall", wall, "--out", "film"]
+    command = [launcher(), "film", str(out), "--wall", wall, "--out", "film"]
     print_line(f"all that you did is in {journal}; `{shlex.join(command)}` makes a film of it")
 
 
 def add_parser(commands, run):
     """Adds `try` to the launcher's commands."""
     command = commands.add_parser("try", help="dig in sand on this desktop, with the mouse",
-                                  description="Shows sand in a window of this desktop, where the mouse digs. Escape ends it; docs/pointer.md.")
+                                  description="Shows sand in a window of this desktop, where the mouse digs. The next `try` continues with the sand. "
+                                              "Escape ends it; docs/pointer.md.")
     command.set_defaults(run=run)
-    command.add_argument("--scene", default="writing", metavar="NAME|FILE", help="scene: a sample's name or a file (default: writing)")
-    command.add_argument("--wall", default="desktop", metavar="NAME|FILE", help="wall: a sample's name or a file (default: desktop)")
-    command.add_argument("--out", default="out/try", help="folder for journal, pictures and summary (default: out/try)")
+    command.add_argument("terrain", nargs="?", metavar="NAME|FILE", help="the same as --scene")
+    command.add_argument("--scene", metavar="NAME|FILE", help=f"a sample's name, a scene file, or a raster, a picture or points (default: {SCENE})")
+    command.add_argument("--wall", default=WALL, metavar="NAME|FILE", help=f"wall: a sample's name or a file (default: {WALL})")
+    command.add_argument("--new", action="store_true", help="begin with new sand in place of the newest sand of this scene, which stays")
+    command.add_argument("--out", help=f"folder for journal, pictures and summary (default: one for each session, below {try_choice.ROOT})")
+    return command

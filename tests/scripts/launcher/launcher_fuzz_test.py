@@ -33,10 +33,12 @@ sys.dont_write_bytecode = True
 
 import programs  # noqa: E402
 from ask import session_control, session_report, session_results  # noqa: E402
-from base import console, events, session_folder  # noqa: E402
+from base import console, events, journal_origin, session_folder  # noqa: E402
 from base.bad_input import BadInput  # noqa: E402
 from hosts import doctor, examined_host  # noqa: E402
 from job import job_log, open_mpi, rank_hosts  # noqa: E402
+from kept import marks, try_sessions  # noqa: E402
+from terrain import kinds, made_scene  # noqa: E402
 from watch import process_failure, spare_hosts, supervisor  # noqa: E402
 
 SEED = 20261125
@@ -55,6 +57,9 @@ MPIRUN = (b"mpirun noticed that process rank 2 with PID 0 on node node02 exited 
 STATUS = {"ok": True, "step": 12, "material": {"talus": 34.0}}
 VERSION = {"program": "sandwall-master", "version": "0.2.0", "build": "0123456789abcdef", "protocol": 8}
 PROBE = {"backend": "egl", "renderer": "llvmpipe", "shortcomings": ["the screen has 60 Hz"], "version": "4.5"}
+JOURNAL = b"SWJL" + b"".join(number.to_bytes(4, "little") for number in (10, 16, 5)) + b"0.2.0" + bytes(8)
+TERRAINS = (b"ncols 2\nnrows 1\ncellsize 1\n1 2\n", b"x,y,z\n1,2,3\n", b'[terrain]\nkind = "dem"\nfile = "v.tif"\n', b"II*\0" + bytes(40),
+            b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\2\0\0\0\1\x08\2\0\0\0", "ncols 2\n".encode("utf-16"), b"\xff\xd8\xff\xe0")
 HOSTS = b"node01 slots=2\nnode02 slots=1 # the left one\nnode03 slots=4 spare\n"
 
 
@@ -207,6 +212,38 @@ def hosts_file(folder, text):
         rank_hosts.hosts_of_wall(text.decode(errors="replace"), "wall.toml")
 
 
+def session_of_try(folder, text):
+    """Half of the text is the mark of a session of `try`, and half its journal."""
+    session = folder.path / "try" / "one"
+    session.mkdir(parents=True, exist_ok=True)
+    mark, _, journal = text.partition(b"\n\n")
+    (session / "try.json").write_bytes(mark)
+    (session / "session.journal").write_bytes(journal)
+    lines = []
+    ours = journal_origin.Origin(10, 16, "0.2.0")
+    with mock.patch.object(try_sessions, "print_line", lines.append), mock.patch.object(journal_origin, "ours", lambda: ours), refused():
+        _, claim = try_sessions.claimed_of(session.parent, marks.Scene("dunes", "0"))
+        if claim is not None:
+            os.close(claim)
+    for line in lines:
+        require_line(line)
+
+
+def terrain(folder, text):
+    path = folder.path / "terrain"
+    path.write_bytes(text)
+    with refused():
+        kind = kinds.kind_of(path)
+        made_scene.text_of(kind, str(path), 0, 1)
+    marks.files_of(text, folder.path)
+
+
+def changed_session_of_try(generator):
+    mark = changed_json({"version": 1, "scene": "dunes", "digest": "0"}, generator) if generator.random() < 0.5 else \
+        b'{"version": 1, "scene": "dunes", "digest": "0"}'
+    return mark + b"\n\n" + changed_bytes(JOURNAL, generator)
+
+
 def changed_output(generator):
     """Returns lines of a job's standard error: events, mpirun's explanations, and others. Some of them are changed."""
     text = b""
@@ -249,6 +286,8 @@ READERS = {
     "answer_of_master": (answer_of_master, lambda generator: changed_json(generator.choice((STATUS, {"ok": False, "error": "no"})), generator) + b"\n"),
     "answers_to_doctor": (answers_to_doctor, lambda generator: changed_json(generator.choice((VERSION, PROBE)), generator)),
     "versions": (versions, lambda generator: changed_json(VERSION, generator)),
+    "session_of_try": (session_of_try, changed_session_of_try),
+    "terrain": (terrain, lambda generator: changed_bytes(generator.choice(TERRAINS), generator)),
     "hosts_file": (hosts_file, lambda generator: changed_bytes(HOSTS, generator)),
 }
 

@@ -6,13 +6,13 @@ import os
 import pathlib
 import re
 import shlex
-import socket
 import subprocess
 import sys
 import unittest
 from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from display_fixture import DisplayTest
 from launcher_fixture import LauncherTest
 import pointer
 from base import environment
@@ -21,21 +21,6 @@ from base.bad_input import BadInput
 MPIRUN = """#!/bin/sh
 echo "mpirun $*"
 """
-
-
-class DisplayTest(LauncherTest):
-    def display(self):
-        """Returns the name of a display at which a made-up X server of this test accepts connections."""
-        server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        self.addCleanup(server.close)
-        for number in range(20000, 30000):
-            try:
-                server.bind(f"\0/tmp/.X11-unix/X{number}")
-                break
-            except OSError:
-                continue
-        server.listen(64)
-        return f":{number}"
 
 
 class PrintedCommands(DisplayTest):
@@ -178,7 +163,7 @@ class ShownCommands(unittest.TestCase):
                 pointer.print_journal(out, wall)
             command = said.call_args[0][0].partition("session.journal; `")[2]
             self.assertEqual(shlex.split(command.removesuffix("` makes a film of it"))[1:],
-                             ["film", f"{out}/session.journal", "--wall", wall, "--out", "film"])
+                             ["film", out, "--wall", wall, "--out", "film"])
 
 
 class LargeWall(DisplayTest):

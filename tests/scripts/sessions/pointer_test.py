@@ -165,6 +165,27 @@ class WallOnADesktop(pointer_fixture.WindowTest):
         self.assertGreater(last - first, 20)
 
 
+class SandOfTry(pointer_fixture.WindowTest):
+    def test_a_raster_is_dug_with_a_tool_of_its_size_and_the_next_try_continues_with_the_sand(self):
+        self.prepare()
+        (self.folder / "valley.asc").write_text("ncols 128\nnrows 96\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n" + "1200 " * (128 * 96))
+        display = self.display_of(640, 480)
+        self.begin(display, "try", self.folder / "valley.asc")
+        self.assertAlmostEqual(self.session.status()["tool_radius"], 24, delta=0.1)  # 1/40 of 960
+        display.keep("try_of_a_raster.png")
+        self.session.drag([(250, 180), (300, 180)])
+        first = self.session.end("key", "Escape")
+        self.begin(display, "try", self.folder / "valley.asc")
+        self.assertGreaterEqual(self.session.status()["step"], first["steps"])
+        self.session.drag([(250, 120), (300, 120)])
+        self.session.end("key", "Escape")
+        log = self.session.log.read_text()
+        self.assertIn("continues with your sand of ", log)
+        self.assertIn("` continues with this sand, and another --out begins with new sand", log)
+        begun = [step["path"] for step, before in zip(self.session.steps(1), self.session.steps()) if (step["engaged"], before["engaged"]) == ("1", "0")]
+        self.assertEqual(len(begun), 2, "the journal has the strokes of both")
+
+
 class WindowsOfAWall(unittest.TestCase):
     """A wall gets the windows for which sandwall-check has places."""
 
