@@ -163,6 +163,8 @@ class Completion(LauncherTest):
     def test_it_offers_names_and_options(self):
         self.assertEqual(self.completed("run", "--wall", "tiled_3"), ["tiled_3x4"])
         self.assertEqual(self.completed("run", "--scene", "dun"), ["dunes"])
+        self.assertEqual(self.completed("try", "dun"), ["dunes"])
+        self.assertEqual(self.completed("try", "--ne"), ["--new"])
         self.assertEqual(self.completed("run", "--device", "poi"), ["pointer"])
         self.assertEqual(self.completed("run", "--device", "script", ":", "gi"), ["gis"])  # as bash splits script:gi
         self.assertIn("gis", self.completed("run", "--device", "script", ":"))
