@@ -133,6 +133,17 @@ TEST_F(Import, APhotoBecomesItsBrightnessOnlyIfAskedFor) {
                                                  722 * 255.0 / 10000 / 255}));
     const scene::Scene taken = load(kImage + "brightness = true\n");
     EXPECT_EQ(taken.terrain.height(1, 0), sand::kUnitsPerCell * 2 / 0.8);
+    const std::vector<double> greys(64, 100);  // JPEG keeps one grey nearly as it is
+    writeRaster("t.jpg", {.columns = 8,
+                          .rows = 8,
+                          .heights = greys,
+                          .place = {},
+                          .epsg = 0,
+                          .type = GDT_Byte,
+                          .driver = "JPEG",
+                          .bands = 3});
+    const scene::EsriGrid jpeg = scene::loadImporter("test").readImage(path("t.jpg"), scene::Colours::brightness, {});
+    EXPECT_NEAR(jpeg.heights[9], 100.0 / 255, 2.0 / 255);
     // A grey picture is its own brightness, with the key as without it.
     writeGreys(path("t.png"), 2, 1, 16, false, {258, 65535});
     EXPECT_TRUE(sameHeights(load(kImage).terrain, load(kImage + "brightness = true\n").terrain));

@@ -14,7 +14,7 @@ from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 import picture_files
-from launcher_fixture import BIN, LauncherTest
+from launcher_fixture import BIN, ROOT, LauncherTest
 from base.bad_input import BadInput
 from terrain import kinds, made_scene
 
@@ -189,6 +189,12 @@ class Run(LauncherTest):
         self.assertIn("--scene out/made_scene.toml", lines[1])
         self.assertIn("--scene out/made_scene.toml", lines[2])
         self.assertFalse((self.folder / "out").exists())
+
+    def test_check_names_the_command_for_terrain(self):
+        ended = subprocess.run([str(ROOT / "scripts" / "sandwall"), "check", "--scene", "valley.asc"], cwd=self.folder, env=self.environment,
+                               capture_output=True, text=True, timeout=60)
+        self.assertEqual((ended.returncode, ended.stderr), (2, "sandwall: check: valley.asc is terrain, and check reads scenes; run --scene valley.asc "
+                                                              "--print-command prints the scene made of it\n"))
 
     def test_a_photo_is_one_line(self):
         picture_files.write_png(picture(), self.folder / "valley.asc")
