@@ -43,7 +43,7 @@ def below_root(scene, new):
 
 
 def give_up(choice):
-    """Gives up the claim of a session that has ended. Removes the folder of a new one that has left nothing but the mark."""
+    """Gives up the claim of a session that has ended. Removes the folder of a new one if only the mark is in it."""
     if choice.claim is not None:
         if choice.begins:
             try_sessions.discard(choice.out)
