@@ -25,9 +25,11 @@ namespace master {
 namespace {
 
 constexpr double kRetrySeconds = 1;
-constexpr const char* kBeyond = ".beyond";            // behind the name of a checkpoint that was set aside
-constexpr std::size_t kCheckpointsKept = 3;           // the newest two may be damaged
-constexpr std::chrono::milliseconds kHeldRanks{500};  // the most that the ranks wait for a checkpoint of the end
+constexpr const char* kBeyond = ".beyond";   // behind the name of a checkpoint that was set aside
+constexpr std::size_t kCheckpointsKept = 3;  // the newest two may be damaged
+
+// The longest time that the ranks wait for a checkpoint at the end.
+constexpr std::chrono::milliseconds kHeldRanks{500};
 
 constexpr double kGridsOfState = 6;  // at most: heights and two fluxes, now and before the stroke
 
