@@ -24,9 +24,15 @@ struct RankHost {
     }
 };
 
-/// Returns the text of a message about the host that lacks most memory; nullopt if all ranks fit their hosts. A render
-/// rank needs `bytesPerRank` + `bytesToDraw` [byte]. The master, which is the first of `ranks`, needs `bytesPerRank`.
-[[nodiscard]] std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank,
-                                                      std::int64_t bytesToDraw = 0);
+/// Memory that a rank needs.
+struct RankNeed {
+    std::int64_t bytes = 0;   // [byte]
+    std::int64_t shared = 0;  // part of it that the other ranks of its host share, because it is code [byte]
+};
+
+/// Returns the text of a message about the host that lacks most memory; nullopt if all ranks fit their hosts. `needs`
+/// has the need of each of `ranks`, of which the first is the master.
+[[nodiscard]] std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks,
+                                                      const std::vector<RankNeed>& needs);
 
 }  // namespace lockstep

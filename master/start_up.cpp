@@ -10,44 +10,73 @@
 #include "base/text.hpp"
 #include "host/build_id.hpp"
 #include "host/event.hpp"
+#include "host/memory.hpp"
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
 #include "master/journal/journal.hpp"
+#include "scene/load/memory.hpp"
+#include "walls/frame_buffers.hpp"
 
 namespace master {
 
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::FieldSize& size, const std::string& file) {
-    // The master makes the heights. If a TIN is made of them, a render rank needs as much memory to draw it.
-    if (const auto lack = lockstep::lackOfMemory(ranks, size.leastBytes())) {
-        throw base::InputError(fmt::format("{}: {} need {}; use fewer cells, or more hosts", file, size.text(), *lack));
+namespace {
+
+std::vector<lockstep::RankNeed> needsOf(const MemoryUse& use, const scene::SandSize& sand) {
+    const auto needOf = [](const scene::ProcessMemory& process) {
+        return lockstep::RankNeed{process.figures().most(), process.shared()};
+    };
+    std::vector<lockstep::RankNeed> needs{needOf(scene::ProcessMemory::ofMaster(sand, use.checkpoints))};
+    for (std::size_t rank = 1; rank < use.hosts.size(); ++rank) {
+        const bool draws = rank <= use.wall.tiles.size();  // requireRanks() refuses other numbers later
+        needs.push_back(needOf(scene::ProcessMemory::ofRank(
+            sand, draws ? walls::frameBufferBytes(use.wall, use.wall.tiles[rank - 1]) : 0)));
+    }
+    return needs;
+}
+
+scene::SandSize sizeOf(const sand::Rules& rules) { return {sand::FieldSize::of(rules), rules.ground != 0}; }
+
+}  // namespace
+
+void requireMemory(const MemoryUse& use, const scene::SandSize& sand, const sand::SizeText& text,
+                   const std::string& file) {
+    if (const auto lack = lockstep::lackOfMemory(use.hosts, needsOf(use, sand))) {
+        throw base::InputError(
+            fmt::format("{}: {} need {}; use {}, or more hosts", file, text.what, *lack, text.fewer));
     }
 }
 
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene, const std::string& file) {
-    if (const auto lack = lockstep::lackOfMemory(ranks, scene.leastBytes(), scene.bytesToDraw())) {
-        const sand::SizeText size = scene.sizeText();
-        throw base::InputError(
-            fmt::format("{}: {} need {}; use {}, or more hosts", file, size.what, *lack, size.fewer));
-    }
+void requireMemory(const MemoryUse& use, const scene::SandSize& sand, const std::string& file) {
+    requireMemory(use, sand, {sand.field.text(), "fewer cells"}, file);
+}
+
+void requireMemory(const MemoryUse& use, const scene::Scene& scene, const std::string& file) {
+    requireMemory(use, scene::SandSize::of(scene), scene.sizeText(), file);
 }
 
 void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, const scene::RasterSize& size,
                            const std::string& file) {
     const std::vector<lockstep::RankHost> master(ranks.begin(), ranks.begin() + (ranks.empty() ? 0 : 1));
-    if (const auto lack = lockstep::lackOfMemory(master, size.bytes())) {
+    if (const auto lack = lockstep::lackOfMemory(master, {{size.bytes()}})) {
         throw base::InputError(
             fmt::format("{}: {} x {} pixels of a raster need {}; coarsen it", file, size.columns, size.rows, *lack));
     }
 }
 
-void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal) {
+void requireMemoryOfJournal(const MemoryUse& use, const std::filesystem::path& journal) {
     const journal::JournalReader reader = openJournal(journal);
-    const sand::FieldSize size = sand::FieldSize::of(journal::rulesOf(reader));
-    if (size.bytesOfReplica()) {
-        requireMemory(ranks, size, journal.string());
+    const scene::SandSize size = sizeOf(journal::rulesOf(reader));
+    if (size.field.bytesOfReplica()) {
+        requireMemory(use, size, journal.string());
+        requireMasterFits(use, size, journal.string());
     } else {
-        requireMemory(ranks, journal::sceneOf(reader), journal.string());
+        requireMemory(use, journal::sceneOf(reader), journal.string());
     }
+}
+
+void requireMasterFits(const MemoryUse& use, const scene::SandSize& sand, const std::string& file) {
+    scene::requireProcess(scene::ProcessMemory::ofMaster(sand, use.checkpoints).figures().most(),
+                          host::freeMemoryOfProcess(), file, {sand.field.text(), "fewer cells"}, "master");
 }
 
 void requireFolder(const std::filesystem::path& out) {

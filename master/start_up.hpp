@@ -9,22 +9,37 @@
 #include "lockstep/session_message.hpp"
 #include "scene/import/raster_check.hpp"
 #include "scene/model/scene.hpp"
+#include "scene/model/session_memory.hpp"
 #include "walls/wall.hpp"
 
 /// The master's checks before the first frame: the hosts can hold the sand, and every rank can take part.
 namespace master {
 
-/// Throws base::InputError if a host lacks memory for the replicas of its ranks, and for what its render ranks draw.
-/// `file` is the scene's file.
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene, const std::string& file);
+/// What the memory of a session depends on, except its sand.
+struct MemoryUse {
+    const std::vector<lockstep::RankHost>& hosts;  // of all ranks
+    const walls::Wall& wall;                       // its tiles are drawn by the ranks
+    bool checkpoints = true;                       // whether the master writes checkpoints
+};
+
+/// Throws base::InputError if a host lacks memory for its ranks on this sand with all of it moving. The haptic server,
+/// which takes its memory meanwhile, does not count: the launcher has counted it. `text` names the sand and `file` its
+/// file in the message.
+void requireMemory(const MemoryUse& use, const scene::SandSize& sand, const sand::SizeText& text,
+                   const std::string& file);
 /// Checks the memory for a field before its heights are made.
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::FieldSize& size, const std::string& file);
+void requireMemory(const MemoryUse& use, const scene::SandSize& sand, const std::string& file);
+/// Checks the memory for a scene after its heights were made: also that of its tool, or of its TIN.
+void requireMemory(const MemoryUse& use, const scene::Scene& scene, const std::string& file);
 /// Checks the memory for the pixels of a raster file before they are read. Only the master holds them.
 void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, const scene::RasterSize& size,
                            const std::string& file);
 /// Checks the memory for the sand of a journal before it is made. Also throws base::InputError if the journal cannot be
 /// read.
-void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal);
+void requireMemoryOfJournal(const MemoryUse& use, const std::filesystem::path& journal);
+/// Throws base::InputError if the master itself may not take the memory for this sand, because it has a limit
+/// (ulimit -v).
+void requireMasterFits(const MemoryUse& use, const scene::SandSize& sand, const std::string& file);
 
 /// Throws base::InputError if `out` exists and is not a folder.
 void requireFolder(const std::filesystem::path& out);

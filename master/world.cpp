@@ -22,6 +22,7 @@
 #include "master/drills/injection.hpp"
 #include "master/journal/journal.hpp"
 #include "master/start_up.hpp"
+#include "scene/load/sand_size.hpp"
 #include "scene/load/scene_file.hpp"
 #include "scene/load/step_cost.hpp"
 #include "walls/desk_windows.hpp"
@@ -33,13 +34,13 @@ namespace {
 constexpr double kAllRead = 0.99;  // part of a raster's heights after which the rest is short
 
 /// Finds the place where the session in --out stopped, if there is one, and returns its scene.
-std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, ProgramOptions& options) {
+std::optional<scene::Scene> resume(const MemoryUse& use, ProgramOptions& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
     if (options.session.record.journal.policy == JournalPolicy::off) {
         throw base::InputError("--resume needs the journal of the session; leave out --journal off");
     }
     if (std::error_code none; std::filesystem::exists(std::filesystem::symlink_status(journal, none))) {
-        requireMemoryOfJournal(cluster.hosts(), journal);
+        requireMemoryOfJournal(use, journal);
     }
     std::optional<ResumedSession> resumed = readSession(journal, options.scene);
     if (!resumed) {
@@ -66,22 +67,32 @@ std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, ProgramOpti
 }
 
 /// Returns the scene of the file `file`.
-scene::Scene readScene(const lockstep::Cluster& cluster, const std::string& file) {
-    const std::vector<lockstep::RankHost>& hosts = cluster.hosts();
+scene::Scene readScene(const MemoryUse& use, const std::string& file) {
+    scene::SizeCollector sizes;
+    const auto require = [&](const scene::FieldToMake& field) {
+        requireMemory(use, sizes.with(field), file);
+        requireMasterFits(use, sizes.with(field), file);
+    };
     host::PhaseProgress progress("read", "reads the scene",
                                  [](const std::string& line) { host::printLine("{}", line); });
-    scene::Scene scene = scene::loadScene(
-        file, {.raster = [&](const scene::RasterSize& size) { requireMemoryOfRaster(hosts, size, file); },
-               .field = [&](const sand::FieldSize& size) { requireMemory(hosts, size, file); },
-               .progress =
-                   [&](double share) {
-                       progress.done(share);
-                       if (share < kAllRead) {
-                           cluster.progress("the reading of its scene", share);
-                       } else {
-                           cluster.progressEnds();  // a mesh that is made of the raster cannot tell its progress
-                       }
-                   }});
+    scene::Scene scene = scene::loadScene(file, {.raster =
+                                                     [&](const scene::RasterSize& size) {
+                                                         requireMemoryOfRaster(use.hosts, size, file);
+                                                         sizes.addRaster(size);
+                                                     },
+                                                 .field = require,
+                                                 .fieldAtMost = require,
+                                                 .progress =
+                                                     [&](double share) {
+                                                         progress.done(share);
+                                                         if (share < kAllRead) {
+                                                             cluster.progress("the reading of its scene", share);
+                                                         } else {
+                                                             // a mesh that is made of the raster cannot tell its
+                                                             // progress
+                                                             cluster.progressEnds();
+                                                         }
+                                                     }});
     cluster.progressEnds();
     for (const scene::RasterStatement& statement : *scene.statements) {
         host::printLine("{}: {}", statement.file, statement.text());
@@ -97,13 +108,13 @@ scene::Scene readScene(const lockstep::Cluster& cluster, const std::string& file
 }
 
 /// Opens the journal of --replay, and returns its scene.
-scene::Scene openRecording(const lockstep::Cluster& cluster, ProgramOptions& options) {
+scene::Scene openRecording(const MemoryUse& use, ProgramOptions& options) {
     options.replay = journalAt(options.replay).string();
     if (std::filesystem::exists(std::filesystem::path(options.out) / "session.journal")) {
         throw base::InputError(
             fmt::format("{}: holds a session, whose results would be lost; choose another --out", options.out));
     }
-    requireMemoryOfJournal(cluster.hosts(), options.replay);
+    requireMemoryOfJournal(use, options.replay);
     SessionOptions& session = options.session;
     session.recording = std::make_shared<const journal::Recording>(readJournal(options.replay), options.replay,
                                                                    options.framesPerSecond);
@@ -115,21 +126,21 @@ scene::Scene openRecording(const lockstep::Cluster& cluster, ProgramOptions& opt
 }
 
 /// Returns the scene of --scene, of the journal that is replayed, or of the session that is resumed.
-scene::Scene loadScene(const lockstep::Cluster& cluster, ProgramOptions& options) {
+scene::Scene loadScene(const MemoryUse& use, ProgramOptions& options) {
     options.session.record.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
-        if (std::optional<scene::Scene> scene = resume(cluster, options)) {
+        if (std::optional<scene::Scene> scene = resume(use, options)) {
             options.scene = options.scene.empty() ? options.out : options.scene;  // for error messages
             return std::move(*scene);
         }
     }
     if (!options.replay.empty()) {
-        return openRecording(cluster, options);
+        return openRecording(use, options);
     }
     if (options.scene.empty()) {
         throw base::InputError("name a --scene, or a journal to --replay");
     }
-    return readScene(cluster, options.scene);
+    return readScene(use, options.scene);
 }
 
 /// Returns the name of the scene for the titles of windows: that of its file, or of the folder of its journal.
@@ -221,8 +232,12 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
     lockstep::requireStartUpLimit();
     cluster.mayTakeLong(true);  // until broadcastSession()
     requireFolder(options.out);
-    World world{loadScene(cluster, options), loadWall(options), {}};
-    requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
+    walls::Wall wall = loadWall(options);
+    const JournalOptions& journal = options.session.record.journal;
+    const MemoryUse use{cluster.hosts(), wall, journal.policy != JournalPolicy::off && journal.checkpointSeconds > 0};
+    scene::Scene scene = loadScene(use, options);
+    requireMemory(use, scene, options.scene + options.replay);
+    World world{std::move(scene), std::move(wall), {}};
     if (world.scene.packed == nullptr) {  // the scene of a resumed session is still packed
         world.scene.pack();
     }

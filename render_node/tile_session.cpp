@@ -12,6 +12,7 @@
 #include "base/not_yet_error.hpp"
 #include "host/build_id.hpp"
 #include "host/clock.hpp"
+#include "host/memory.hpp"
 #include "host/print_line.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/divergence.hpp"
@@ -29,6 +30,8 @@
 #include "render_node/pointer/pointer_reader.hpp"
 #include "render_node/tile_painter.hpp"
 #include "scene/model/scene.hpp"
+#include "scene/model/session_memory.hpp"
+#include "walls/frame_buffers.hpp"
 #include "walls/stereo_change.hpp"
 #include "walls/window_size.hpp"
 
@@ -56,6 +59,7 @@ public:
             const GlProgram broken(shaderSource("solid.vert.glsl"), shaderSource("light.glsl"),
                                    {"sand.frag.glsl", "spoilt on purpose"});
         }
+        requireMemory();
         const scene::Scene scene = scene::Scene::decode(message.scene, scene::Scene::Keep::packedToo);
         replica_.emplace(scene, executor);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
@@ -143,6 +147,17 @@ public:
     }
 
 private:
+    /// Throws base::InputError if this process may not take the memory for the sand, for example because it has a limit
+    /// (ulimit -v). Called before the sand is made.
+    void requireMemory() const {
+        const sand::Rules rules = scene::Scene::decodeRules(message_.scene);
+        const scene::SandSize sand{sand::FieldSize::of(rules), rules.ground != 0};
+        const std::int64_t needed =
+            scene::ProcessMemory::ofRank(sand, walls::frameBufferBytes(wall_, tile_)).figures().most();
+        scene::requireProcess(needed, host::freeMemoryOfProcess(), message_.sceneName,
+                              {sand.field.text(), "fewer cells"}, fmt::format("rank of {}", lockstep::hostName()));
+    }
+
     void applyFaults(lockstep::FrameMessage& frame) {
         faults_.strike(frame.frame, *replica_);
         if (faults_.movesView(frame.frame)) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 
 #include "base/input_error.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
+#include "walls/check_memory.hpp"
 #include "walls/check_scene.hpp"
 #include "walls/desk_windows.hpp"
 #include "walls/wall.hpp"
@@ -17,26 +19,37 @@ namespace {
 
 struct Options {
     std::string wall, scene, stereo, svg, desk;
-    bool mono = false, ranks = false, hosts = false, outputs = false, cells = false;
+    bool mono = false, ranks = false, hosts = false, outputs = false, cells = false, memory = false,
+         noCheckpoints = false;
 };
+
+walls::Wall wallOf(const Options& options) {
+    const walls::Wall wall = walls::loadWallAs(options.wall, options.mono ? "mono" : options.stereo);
+    return options.desk.empty()
+               ? wall
+               : walls::placedOnDesk(wall, walls::DeskArea::parse(options.desk, "--desk"), options.wall);
+}
 
 int check(const Options& options) {
     if (options.cells && options.scene.empty()) {
         throw base::InputError("--cells: name a scene with --scene");
     }
+    if (options.wall.empty() && (options.scene.empty() || options.memory)) {
+        throw base::InputError(options.memory ? "--memory: name a WALL, too" : "name a WALL, or a scene with --scene");
+    }
+    const std::optional<walls::Wall> known = options.wall.empty() ? std::nullopt : std::optional(wallOf(options));
+    if (options.memory) {
+        fmt::print("{}", walls::memoryLines(options.scene, *known, !options.noCheckpoints));
+        return 0;
+    }
     if (!options.scene.empty()) {
-        fmt::print("{}", options.cells ? walls::cellsOfScene(options.scene) : walls::describeScene(options.scene));
-        if (options.wall.empty()) {
-            return 0;
-        }
+        fmt::print("{}", options.cells ? walls::cellsOfScene(options.scene)
+                                       : walls::describeScene(options.scene, known ? &*known : nullptr));
     }
-    if (options.wall.empty()) {
-        throw base::InputError("name a WALL, or a scene with --scene");
+    if (!known) {
+        return 0;
     }
-    walls::Wall wall = walls::loadWallAs(options.wall, options.mono ? "mono" : options.stereo);
-    if (!options.desk.empty()) {
-        wall = walls::placedOnDesk(wall, walls::DeskArea::parse(options.desk, "--desk"), options.wall);
-    }
+    const walls::Wall& wall = *known;
     if (!options.svg.empty()) {
         host::WholeFile file(options.svg);
         file.stream() << walls::drawingOf(wall);
@@ -73,8 +86,17 @@ int main(int argc, char** argv) {
     const host::Option ranks = line.flag("--ranks", options.ranks, "print only the number of render ranks");
     const host::Option hosts = line.flag("--hosts", options.hosts, "print only the host of each rank from 1, or '-'");
     hosts.excludes(ranks);
+    const host::Option memory =
+        line.flag(
+                "--memory", options.memory,
+                "print only the memory of each process with this --scene: server, master or rank, then bytes at rest, "
+                "at the peak of the start, with all sand moving, and shared by such processes on a host")
+            .excludes(ranks)
+            .excludes(hosts);
+    line.flag("--no-checkpoints", options.noCheckpoints, "with --memory: of a master that writes no checkpoints");
     line.flag("--outputs", options.outputs, "print only the number of outputs, and of those with a place on a screen")
         .excludes(ranks)
-        .excludes(hosts);
+        .excludes(hosts)
+        .excludes(memory);
     return host::runMain(line, argc, argv, [&] { return check(options); });
 }

@@ -13,8 +13,9 @@
 #include "sand/grid/tile_hash.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
-#include "scene/load/scene_file.hpp"
+#include "scene/load/sand_size.hpp"
 #include "scene/load/step_cost.hpp"
+#include "scene/model/start_time.hpp"
 
 namespace bench {
 namespace {
@@ -90,6 +91,28 @@ void explainMemory(const scene::Scene& scene, Explanation& rows) {
                 "a hash and a flag per tile of 32 x 32 cells");
     rows.memory("bedrock and walls", scene.ground ? scene.ground->cells().bytes() : 0,
                 scene.ground ? "a height of rock per cell" : "the scene has none");
+}
+
+scene::SandSize sizeOf(const scene::Scene& scene, const scene::SizeCollector& sizes) {
+    scene::SandSize size = scene::SandSize::of(scene);
+    size.rasterBytes = sizes.rasterBytes();
+    return size;
+}
+
+/// Lists the memory of each process of a session on the desktop wall, as the check before the start takes it.
+void explainProcesses(const scene::SandSize& sand, Explanation& rows) {
+    constexpr std::int64_t kFrameBuffers = std::int64_t{12} * 1280 * 720;  // [byte]
+    const auto explain = [&rows](const std::string& process, const scene::MemoryFigures& figures) {
+        const auto row = [&](const char* when, std::int64_t bytes, const char* why) {
+            rows.memory((process + when).c_str(), static_cast<std::size_t>(bytes), why);
+        };
+        row(" at rest", figures.rest, "at most, with a stroke kept for an undo");
+        row(" at the start", figures.peak, "at most, until the sand rests for the first time");
+        row(" while all moves", figures.moving, "at most, with a stroke kept and a checkpoint being written");
+    };
+    explain("haptic server", scene::ProcessMemory::ofServer(sand).figures());
+    explain("master", scene::ProcessMemory::ofMaster(sand).figures());
+    explain("render rank", scene::ProcessMemory::ofRank(sand, kFrameBuffers).figures());
 }
 
 void explainRules(const scene::Scene& scene, Explanation& rows) {
@@ -189,7 +212,9 @@ void explainSteps(const scene::Scene& scene, const Settings& settings, Explanati
 }  // namespace
 
 void explain(const Settings& settings, Csv& csv) {
-    const scene::Scene scene = scene::loadScene(settings.scene);
+    scene::SizeCollector sizes;
+    const scene::Scene scene =
+        scene::loadScene(settings.scene, {.raster = [&](const scene::RasterSize& raster) { sizes.addRaster(raster); }});
     for (const scene::RasterStatement& statement : *scene.statements) {
         csv.note(statement.file + ": " + statement.text());
     }
@@ -204,8 +229,10 @@ void explain(const Settings& settings, Csv& csv) {
     if (const auto cost = scene::stepCostOf(scene)) {
         csv.note(cost->text(scene));
     }
+    csv.note(scene::StartTime::of(sizeOf(scene, sizes)).text());
     Explanation rows(csv);
     explainMemory(scene, rows);
+    explainProcesses(sizeOf(scene, sizes), rows);
     explainRules(scene, rows);
     explainSteps(scene, settings, rows);
     for (const auto& [name, bytes] : mappedLibraries()) {

@@ -132,10 +132,10 @@ std::function<std::vector<base::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
 
 scene::Scene loadScene(const std::string& file, const std::function<void(double)>& done) {
     const std::int64_t free = host::freeMemoryOfProcess();
-    scene::SizeChecks checks = scene::checksOfOneReplica(file, free);
+    scene::SizeChecks checks = scene::checksOfServer(file, free);
     checks.progress = done;
     scene::Scene scene = scene::loadScene(file, checks);
-    scene::requireReplica(scene, file, free);
+    scene::requireServer(scene, file, free);
     return scene;
 }
 

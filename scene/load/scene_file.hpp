@@ -9,6 +9,11 @@
 
 namespace scene {
 
+/// Size of a field before its heights are made.
+struct FieldToMake : sand::FieldSize {
+    bool ground = false;  // whether it gets rock or walls, or may get walls where the file has no data
+};
+
 /// Checks that are called before the memory of a scene is taken, and the progress of its reading. The checks throw if
 /// the scene does not fit. Each may be empty.
 struct SizeChecks {
@@ -19,7 +24,9 @@ struct SizeChecks {
     /// It is called once, as soon as the size is known. For a raster whose header marks no data, that is before its
     /// pixels are read. For other rasters, it is after the edges without data have been cut off. It is not called for a
     /// terrain of points, which has no field.
-    std::function<void(const sand::FieldSize& size)> field{};
+    std::function<void(const FieldToMake& size)> field{};
+    /// Receives the size of a raster from which edges may be cut off, before its pixels are read. `field` follows.
+    std::function<void(const FieldToMake& atMost)> fieldAtMost{};
     /// Receives the part of the terrain that has been read or made, 0 to 1. It never goes back. It must not throw.
     std::function<void(double share)> progress{};
 };

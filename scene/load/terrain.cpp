@@ -35,7 +35,8 @@ sand::HeightField levelField(const host::TomlTable& file, const SizeChecks& chec
     const double width = field.numberOr("width", 2.0, host::kPositive);  // (-1, 1) as in Dorjgotov et al. 2007
     field.finish();
     if (checks.field) {
-        checks.field({columns, rows, file.has("tin")});
+        const host::TomlTable terrain = file.requiredTable("terrain");
+        checks.field({{columns, rows, file.has("tin")}, terrain.has("layer") || terrain.has("bedrock")});
     }
     return {columns, rows, width / columns};
 }
@@ -87,17 +88,23 @@ public:
         }
         // A grid of rock has the same cells, so that no edge without data is cut off.
         if (size.complete || terrain_.has("bedrock")) {
-            askOfField(size.columns, size.rows);
+            askOfField(size.columns, size.rows, !size.complete);
+        } else if (checks_.fieldAtMost) {
+            checks_.fieldAtMost(sizeOf(size.columns, size.rows, true));
         }
     }
     /// Called with the size of the field. Returns at once if the size was checked before.
-    void askOfField(int columns, int rows) {
+    void askOfField(int columns, int rows, bool walls) {
         if (checks_.field && !std::exchange(asked_, true)) {
-            checks_.field({columns, rows, tin_});
+            checks_.field(sizeOf(columns, rows, walls));
         }
     }
 
 private:
+    [[nodiscard]] FieldToMake sizeOf(int columns, int rows, bool walls) const {
+        return {{columns, rows, tin_}, walls || terrain_.has("layer") || terrain_.has("bedrock")};
+    }
+
     const host::TomlTable& terrain_;
     const SizeChecks& checks_;
     bool computed_, tin_;
@@ -136,7 +143,9 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     if (source.onMap) {
         survey = withoutHeights(grid);
     }
-    asked.askOfField(grid.columns, grid.rows);
+    const bool walls =
+        std::any_of(grid.heights.begin(), grid.heights.end(), [](double height) { return std::isnan(height); });
+    asked.askOfField(grid.columns, grid.rows, walls);
     sand::HeightField field(grid.columns, grid.rows, grid.cellSize);
     const std::string key = terrain.has("file") ? "file" : "z";
     const auto adviceFor = [&](double height) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/start_up.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,13 +14,26 @@
 #include "scene/model/scene.hpp"
 #include "tests/support/files/folder_test.hpp"
 #include "tests/support/refusal.hpp"
+#include "walls/frame_buffers.hpp"
 
 namespace {
 
 constexpr std::int64_t kGiB = std::int64_t{1} << 30;
 
 std::string refusal(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene) {
-    return test::refusalOf([&] { master::requireMemory(ranks, scene, "s.toml"); });
+    const walls::Wall wall;  // without pictures
+    return test::refusalOf([&] { master::requireMemory(master::MemoryUse{ranks, wall}, scene, "s.toml"); });
+}
+
+std::string inGibibytes(std::int64_t bytes) { return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / kGiB); }
+
+/// Returns what the ranks of one host need together for this sand.
+std::int64_t needOf(const scene::SandSize& sand, int renderRanks, bool master = true) {
+    const auto rank = scene::ProcessMemory::ofRank(sand, 0);
+    const std::int64_t ranks = renderRanks * (rank.figures().most() - rank.shared());
+    const auto first = scene::ProcessMemory::ofMaster(sand);
+    const std::int64_t own = master ? first.figures().most() - first.shared() : 0;
+    return ranks + own + std::max(renderRanks > 0 ? rank.shared() : 0, master ? first.shared() : 0);
 }
 
 scene::Scene sceneOf(int side) {
@@ -107,36 +121,68 @@ TEST(StartUp, WaitsOnlyForRanksWhoseDisplaysMayStillCome) {
 }
 
 TEST(StartUp, RefusesAGridThatDoesNotFitTheMemory) {
-    EXPECT_EQ(refusal({{"a", 8 * kGiB}, {"a", 8 * kGiB}}, sceneOf(16384)), "nothing");
-    EXPECT_EQ(refusal({{"a", 8 * kGiB}, {"a", 8 * kGiB}, {"a", 8 * kGiB}}, sceneOf(16384)),
-              "s.toml: 16384 x 16384 cells need at least 12.0 GiB for the 3 ranks on a, where 8.0 GiB are free; use "
-              "fewer cells, or more hosts");
+    const std::int64_t need = needOf(scene::SandSize::of(sceneOf(16384)), 2);
+    EXPECT_GT(need, 16 * kGiB) << "16 bytes a cell and process were too few";
+    EXPECT_EQ(refusal({{"a", need}, {"a", need}, {"a", need}}, sceneOf(16384)), "nothing");
+    EXPECT_EQ(refusal({{"a", need - 1}, {"a", need}, {"a", need}}, sceneOf(16384)),
+              "s.toml: 16384 x 16384 cells need " + inGibibytes(need) + " for the 3 ranks on a, where " +
+                  inGibibytes(need - 1) + " are free; use fewer cells, or more hosts");
+}
+
+TEST(StartUp, AMasterWithoutCheckpointsNeedsLess) {
+    const walls::Wall wall;
+    const scene::SandSize sand{{4096, 4096, false}};
+    const std::int64_t need = scene::ProcessMemory::ofMaster(sand, false).figures().most();
+    const std::vector<lockstep::RankHost> ranks{{"a", need}};
+    EXPECT_EQ(test::refusalOf([&] { master::requireMemory({ranks, wall, false}, sand, "s.toml"); }), "nothing");
+    EXPECT_NE(test::refusalOf([&] { master::requireMemory({ranks, wall, true}, sand, "s.toml"); }), "nothing");
+}
+
+TEST(StartUp, CountsTheFrameBuffersOfEachTile) {
+    walls::Wall wall = wallOf(1);
+    wall.tiles[0].pixels = {8192, 8192};
+    const scene::SandSize sand{{512, 512, false}};
+    const std::int64_t need =
+        scene::ProcessMemory::ofRank(sand, walls::frameBufferBytes(wall, wall.tiles[0])).figures().most();
+    EXPECT_GT(need, 8 * std::int64_t{8192} * 8192);
+    const std::vector<lockstep::RankHost> fits{{"a", kGiB}, {"b", need}}, lacks{{"a", kGiB}, {"b", need - 1}};
+    EXPECT_EQ(test::refusalOf([&] { master::requireMemory({fits, wall}, sand, "s.toml"); }), "nothing");
+    EXPECT_NE(test::refusalOf([&] { master::requireMemory({lacks, wall}, sand, "s.toml"); }), "nothing");
 }
 
 TEST(StartUp, RefusesATinWhoseVerticesDoNotFitTheMemory) {
-    EXPECT_EQ(refusal({{"a", kGiB}, {"a", kGiB}}, tinOf(512, 1 << 20)), "nothing");
-    EXPECT_EQ(refusal({{"a", kGiB}, {"a", kGiB}}, tinOf(512, 1 << 22)),
-              "s.toml: a TIN's 4194304 vertices over 512 x 512 nominal cells need at least 2.5 GiB for the 2 ranks on "
-              "a, where 1.0 GiB are free; use fewer of either, or more hosts");
+    const scene::Scene tin = tinOf(512, 1 << 22);
+    const std::int64_t need = needOf(scene::SandSize::of(tin), 1);
+    EXPECT_GT(need, 2 * std::int64_t{320} << 22);
+    EXPECT_EQ(refusal({{"a", need}, {"a", need}}, tin), "nothing");
+    EXPECT_EQ(refusal({{"a", kGiB}, {"a", kGiB}}, tin),
+              "s.toml: a TIN's 4194304 vertices over 512 x 512 nominal cells need " + inGibibytes(need) +
+                  " for the 2 ranks on a, where 1.0 GiB are free; use fewer of either, or more hosts");
 }
 
 TEST(StartUp, RefusesATinWhoseNominalCellsDoNotFitTheMemoryOfThoseThatDraw) {
-    EXPECT_EQ(refusal({{"a", kGiB}, {"b", 2 * kGiB}}, tinOf(16384, 4)), "nothing");
-    EXPECT_EQ(refusal({{"a", kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}}, tinOf(16384, 4)),
-              "s.toml: a TIN's 4 vertices over 16384 x 16384 nominal cells need at least 3.0 GiB for the 3 ranks on b, "
-              "where 2.0 GiB are free; use fewer of either, or more hosts");
+    const scene::Scene tin = tinOf(16384, 4);
+    const std::int64_t need = needOf(scene::SandSize::of(tin), 3, false);
+    EXPECT_GT(need, 3 * kGiB);
+    EXPECT_EQ(refusal({{"a", 8 * kGiB}, {"b", need}, {"b", need}, {"b", need}}, tin), "nothing");
+    EXPECT_EQ(refusal({{"a", 8 * kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}}, tin),
+              "s.toml: a TIN's 4 vertices over 16384 x 16384 nominal cells need " + inGibibytes(need) +
+                  " for the 3 ranks on b, where 2.0 GiB are free; use fewer of either, or more hosts");
 }
 
 TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
-    const auto refusalOn = [](std::int64_t free) {
-        return test::refusalOf([free] {
-            master::requireMemory({{"a", free}, {"b", 8 * kGiB}}, sand::FieldSize{16384, 16384, true}, "s.toml");
-        });
+    const walls::Wall wall;
+    const scene::SandSize sand{{16384, 16384, true}};
+    const std::int64_t need = needOf(sand, 0);
+    EXPECT_GT(need, kGiB) << "the heights alone are 1 GiB";
+    const auto refusalOn = [&](std::int64_t free) {
+        const std::vector<lockstep::RankHost> ranks{{"a", free}, {"b", 8 * kGiB}};
+        return test::refusalOf([&] { master::requireMemory({ranks, wall}, sand, "s.toml"); });
     };
-    EXPECT_EQ(refusalOn(kGiB), "nothing") << "the heights alone are 1 GiB";
+    EXPECT_EQ(refusalOn(need), "nothing");
     EXPECT_EQ(refusalOn(kGiB / 2),
-              "s.toml: 16384 x 16384 nominal cells of a TIN need at least 1.0 GiB for the one rank on a, where 0.5 GiB "
-              "are free; use fewer cells, or more hosts");
+              "s.toml: 16384 x 16384 nominal cells of a TIN need " + inGibibytes(need) +
+                  " for the one rank on a, where 0.5 GiB are free; use fewer cells, or more hosts");
 }
 
 // Only the master reads a raster.
@@ -149,7 +195,7 @@ TEST(StartUp, RefusesARasterWhosePixelsDoNotFitTheMastersHost) {
     };
     EXPECT_EQ(refusalOn(2 * kGiB), "nothing") << "the other ranks read nothing";
     EXPECT_EQ(refusalOn(kGiB),
-              "s.toml: 16384 x 16384 pixels of a raster need at least 2.0 GiB for the one rank on a, where 1.0 GiB are "
+              "s.toml: 16384 x 16384 pixels of a raster need 2.0 GiB for the one rank on a, where 1.0 GiB are "
               "free; coarsen it");
 }
 

@@ -8,6 +8,7 @@
 
 #include "scene/import/raster_memory.hpp"
 #include "scene/load/memory.hpp"
+#include "scene/load/sand_size.hpp"
 #include "tests/support/files/scene_fixture.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -52,6 +53,39 @@ TEST_F(SceneMemory, OfOneReplicaIsComparedWithWhatIsFree) {
     EXPECT_EQ(refusalOn(kGigabyte / 16 - 1, field + "[tin]\n"),
               "s.toml: 4096 x 4096 nominal cells of a TIN need at least 0.1 GiB, and 0.1 GiB are free: fewer cells, or "
               "a machine with more memory");
+}
+
+TEST_F(SceneMemory, OfAServerIsThatOfAllSandMoving) {
+    const std::string text = "[field]\ncolumns = 4096\nrows = 4096\n[terrain]\n" + kRest;
+    const std::int64_t need = scene::ProcessMemory::ofServer({{4096, 4096, false}}).figures().most();
+    EXPECT_GT(need, std::int64_t{24} * 4096 * 4096) << "with sand for an undo and the start";
+    const auto refusalOfServer = [&](std::int64_t free, const std::string& scene) {
+        const std::filesystem::path file = write("s.toml", scene);
+        return test::refusalOf([&] { (void)scene::loadScene(file, scene::checksOfServer("s.toml", free)); });
+    };
+    EXPECT_EQ(refusalOfServer(need, text), "nothing");
+    EXPECT_EQ(
+        refusalOfServer(need - 1, text),
+        fmt::format("s.toml: 4096 x 4096 cells need {0} in the haptic server, and {0} are free: fewer cells, or a "
+                    "machine with more memory",
+                    scene::bytesInWords(need)));
+    const std::int64_t withRock = scene::ProcessMemory::ofServer({{4096, 4096, false}, true}).figures().most();
+    EXPECT_GT(withRock, need);
+    const std::string rock = "[field]\ncolumns = 4096\nrows = 4096\n[terrain]\nlayer = 1\n" + kRest;
+    EXPECT_NE(refusalOfServer(withRock - 1, rock), "nothing");
+}
+
+TEST_F(SceneMemory, IsKnownBeforePixelsAreRead) {
+    write("t.asc", "ncols 400\nnrows 300\ncellsize 1\nNODATA_value -1\n1 word\n");
+    const auto size =
+        scene::sizeOfScene(write("s.toml", "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n" + kRest));
+    ASSERT_TRUE(size);
+    EXPECT_EQ(size->field, (sand::FieldSize{400, 300, false}));
+    EXPECT_TRUE(size->ground) << "cells without data are walls";
+    EXPECT_EQ(size->rasterBytes, 8 * 400 * 300);
+    EXPECT_FALSE(scene::sizeOfScene(write("p.toml", "[terrain]\nkind = \"points\"\nfile = \"none.xyz\"\n")));
+    EXPECT_THROW((void)scene::sizeOfScene(write("b.toml", "[terrain]\nkind = \"dem\"\nfile = \"none.tif\"\n")),
+                 base::InputError);
 }
 
 TEST_F(SceneMemory, OfATinIsThatOfItsVertices) {

@@ -99,6 +99,47 @@ TEST(CheckProgram, ChecksASceneAndPrintsTheUnitsOfItsTerrain) {
     std::filesystem::remove_all(folder);
 }
 
+/// Returns the numbers of the line that begins with `process` in the output of --memory.
+std::vector<std::int64_t> memoryOf(const std::string& output, const std::string& process) {
+    std::istringstream lines(output);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string first;
+        if (words >> first && first == process) {
+            return {std::istream_iterator<std::int64_t>(words), {}};
+        }
+    }
+    return {};
+}
+
+TEST(CheckProgram, PrintsTheMemoryOfEachProcess) {
+    const std::filesystem::path scene = std::filesystem::path(testing::TempDir()) / "sandwall_check_memory.toml";
+    std::ofstream(scene) << "[field]\ncolumns = 2048\n[terrain]\n[material]\n[tool]\nradius = 0.05\n";
+    const std::string session = pathOf("tiled_3x4.toml") + " --scene " + scene.string();
+    const support::Ran ran = support::runProgram("sandwall-check", session + " --memory");
+    EXPECT_EQ(ran.status, 0);
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 14) << ran.output;
+    for (const char* process : {"server", "master", "1", "12"}) {
+        const std::vector<std::int64_t> figures = memoryOf(ran.output, process);
+        ASSERT_EQ(figures.size(), 4U) << ran.output;
+        EXPECT_GT(figures[0], std::int64_t{8} * 2048 * 2048) << process;
+        EXPECT_GT(figures[2], figures[1]) << process << ": all sand moves";
+        EXPECT_LT(figures[3], figures[0]) << process;
+    }
+    const std::string without = support::runProgram("sandwall-check", session + " --memory --no-checkpoints").output;
+    EXPECT_LT(memoryOf(without, "master")[2], memoryOf(ran.output, "master")[2] / 2);
+    EXPECT_EQ(memoryOf(without, "12"), memoryOf(ran.output, "12"));
+    EXPECT_EQ(support::runProgram("sandwall-check", "--memory --scene " + scene.string()).status, 2);
+
+    const std::string table = support::runProgram("sandwall-check", session).output;
+    for (const char* row :
+         {"haptic server +[0-9.]+ [MG]iB +[0-9.]+ [MG]iB +[0-9.]+ [MG]iB\n", "master  ", "rank of 1024 x 768 pixels ",
+          "this machine: server, master, 12 ranks ", "the start takes ≈ [0-9.]+ s"}) {
+        EXPECT_TRUE(std::regex_search(table, std::regex(row))) << row << "\n" << table;
+    }
+    std::filesystem::remove(scene);
+}
+
 TEST(CheckProgram, CountsOutputsAndThoseWithAPlace) {
     for (const auto& [arguments, line] : {std::pair{"desktop.toml", "1 0\n"},
                                           {"tiled_3x4.toml", "24 0\n"},

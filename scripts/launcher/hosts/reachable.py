@@ -3,6 +3,7 @@
 
 import math
 import os
+import re
 import shlex
 import socket
 import subprocess
@@ -17,9 +18,11 @@ from job.rank_hosts import HERE
 LOOK_SECONDS = 0.1
 REACH_SECONDS = 45  # a login may wait 30 s for a name or a folder
 SILENT_SECONDS = 10  # after which the hosts that have not answered are named
+MEMORY = re.compile(r"(\d{1,15}) kB")
 # Machines may have the same name. Each start of a machine has another boot id.
 QUESTIONS = (marked_answer.SAY + '; test -x {node} && echo "program yes"; '
-             'echo "machine $(uname -n) $(cat /proc/sys/kernel/random/boot_id)"; mpirun --version 2>/dev/null | say mpi')
+             'echo "machine $(uname -n) $(cat /proc/sys/kernel/random/boot_id)"; '
+             'echo "memory $(sed -n "s/^MemAvailable: *//p" /proc/meminfo)"; mpirun --version 2>/dev/null | say mpi')
 
 
 def identity_here():
@@ -42,11 +45,11 @@ class Answers:
     """The answers of hosts. `complaints` has the reason of each host that cannot run a rank, and `identities` the identity of each.
 
     `absent` are the hosts among `complaints` that may still come: they do not answer, or their programs are on a file system
-    that is not mounted yet.
+    that is not mounted yet. `free` is the memory that is free on each host [byte], as far as they have answered.
     """
 
     def __init__(self):
-        self.complaints, self.identities, self.absent = {}, {HERE: identity_here()}, set()
+        self.complaints, self.identities, self.absent, self.free = {}, {HERE: identity_here()}, set(), {}
 
 
 def ask(hosts, node, version=None, stopped=lambda: False, say_silent=lambda hosts: None):
@@ -80,6 +83,8 @@ def ask(hosts, node, version=None, stopped=lambda: False, say_silent=lambda host
             if complaint:
                 found.absent.add(host)
             found.identities[host] = identity_of(answers.get("machine", ""))
+            if memory := MEMORY.fullmatch(answers.get("memory", "")):
+                found.free[host] = 1024 * int(memory[1])
             other = open_mpi.VERSION.search(answers.get("mpi", ""))
             if not complaint and version and other and other[1] != version:
                 complaint = f"has mpirun (Open MPI) {other[1]}, and this machine {version}; install the same version on every host"

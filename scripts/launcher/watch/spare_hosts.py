@@ -24,6 +24,7 @@ class SessionHosts:
         self.stopped = stopped
         self.names, self.spares, self.node, self.version = list(names), list(spares), node, version
         self.identities = {}  # of every host that has answered, as reachable.py reads them
+        self.free = {}  # free memory of every other host that has answered, then [byte]
         self.strikes = collections.Counter()
         self.silent = set()  # hosts that a line has named because they did not answer for a while
 
@@ -64,6 +65,7 @@ class SessionHosts:
         if answers.complaints and self.stopped():
             raise Stopped
         self.identities.update(answers.identities)
+        self.free.update(answers.free)
         return answers
 
     def places(self):

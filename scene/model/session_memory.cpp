@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/model/session_memory.hpp"
+
+#include <fmt/format.h>
+
+#include "base/input_error.hpp"
+
+namespace scene {
+namespace {
+
+constexpr std::int64_t kMebibyte = 1 << 20;
+constexpr std::int64_t kNumber = sizeof(std::int32_t);  // [byte]
+
+constexpr std::int64_t kPerVertex = 320;  // [byte] of a TIN's vertex in a replica
+
+std::int64_t cellsOf(const sand::FieldSize& field) { return std::int64_t{field.columns} * field.rows; }
+
+// Numbers that are kept for an undo or a checkpoint are packed (sand/grid/packed_cells.hpp). These are the bits that
+// noise on steep sand needs: heights about 17 to 20, each of the two fluxes about 15 [byte].
+std::int64_t bytesOfKeptHeights(std::int64_t cells) { return cells * 5 / 2; }
+std::int64_t bytesOfKeptFluxes(std::int64_t cells) { return 4 * cells; }
+
+bool isGrid(const SandSize& sand) { return !sand.field.nominal; }
+
+}  // namespace
+
+// Memory of a process whose sand is small [byte]. Measured with scripts/figures/sessions/memory_figures.py. The shared
+// part is code of programs and libraries.
+struct ProcessMemory::Fixed {
+    std::int64_t own, shared;
+    std::int64_t start = 0;  // more at the start: a rank compiles shaders
+};
+constexpr ProcessMemory::Fixed kServer{8 * kMebibyte, 10 * kMebibyte};
+constexpr ProcessMemory::Fixed kMaster{12 * kMebibyte, 18 * kMebibyte};
+constexpr ProcessMemory::Fixed kRank{44 * kMebibyte, 24 * kMebibyte, 32 * kMebibyte};
+constexpr std::int64_t kImport = 32 * kMebibyte;  // GDAL and its libraries, of a process that reads a raster
+
+MemoryFigures& MemoryFigures::operator+=(const MemoryFigures& more) {
+    rest += more.rest;
+    peak += more.peak;
+    moving += more.moving;
+    return *this;
+}
+
+std::int64_t bytesOfPlane(const sand::FieldSize& field) {
+    constexpr std::int64_t kPadding = 16;  // [cell], as CellArray's
+    const std::int64_t stride = 2 * kPadding + (field.columns + kPadding - 1) / kPadding * kPadding;
+    return kNumber * stride * (std::int64_t{field.rows} + 2);
+}
+
+std::int64_t bytesOfPackedPlane(const sand::FieldSize& field) {
+    // zstd stores blocks of 128 KiB that it cannot compress, with three bytes each.
+    return kNumber * cellsOf(field) + cellsOf(field) / 1024 + 4096;
+}
+
+SandSize SandSize::of(const sand::Start& start) {
+    SandSize size{sand::FieldSize::of(start.rules), start.ground != nullptr};
+    if (start.tin != nullptr) {
+        size.vertices = static_cast<std::int64_t>(start.tin->places.size());
+    } else {
+        size.toolBytes = start.leastBytes() - size.field.leastBytes();
+    }
+    return size;
+}
+
+ProcessMemory::ProcessMemory(const SandSize& sand, const Fixed& fixed, bool readsRaster)
+    : shared_(fixed.shared + (readsRaster ? kImport : 0)) {
+    const std::int64_t later = fixed.own + shared_, start = later + fixed.start;
+    add("program and libraries", {start, start, later, later, later});
+    addReplica(sand);
+}
+
+void ProcessMemory::addReplica(const SandSize& sand) {
+    if (!isGrid(sand)) {
+        const std::int64_t mesh = kPerVertex * sand.vertices;
+        add("triangles", {0, mesh, mesh, mesh, mesh});
+        return;
+    }
+    const std::int64_t plane = bytesOfPlane(sand.field), packed = bytesOfPackedPlane(sand.field);
+    const std::int64_t cells = cellsOf(sand.field);
+    add("heights", {0, plane, plane, plane, plane});
+    // Reading them takes no memory. Blocks at rest give theirs back after some steps.
+    add("fluxes", {0, 0, 2 * plane, 0, 2 * plane});
+    add("heights of the start, compressed", {0, packed, packed, packed, packed});
+    // The heights before the stroke, by tiles: of the whole field if the stroke began before the first sweep, or if all
+    // sand has moved since. And the fluxes before it, if all sand moved when it began.
+    const std::int64_t before = bytesOfKeptHeights(cells);
+    add("sand for an undo", {0, 0, before, before, before + bytesOfKeptFluxes(cells)});
+    // Per block of 8 x 8 cells: marks, and runs of blocks. Per tile of 32 x 32 cells: hash and last movement.
+    const std::int64_t marks = cells / 16, runs = cells / 4;
+    add("marks of blocks and hashes", {0, marks, runs, marks, runs});
+    const std::int64_t ground = sand.ground ? plane : 0;
+    add("rock and walls", {0, ground, ground, ground, ground});
+    add("coarse phase of the tool", {0, 0, 0, 0, sand.toolBytes});
+}
+
+ProcessMemory ProcessMemory::ofServer(const SandSize& sand) {
+    ProcessMemory memory(sand, kServer, sand.rasterBytes > 0);
+    const std::int64_t plane = bytesOfPlane(sand.field), packed = bytesOfPackedPlane(sand.field);
+    const std::int64_t ground = sand.ground ? plane : 0;
+    memory.add("raster", {sand.rasterBytes, 0, 0, 0, 0});
+    memory.add("heights of the scene", {plane + ground, plane, 0, 0, 0});
+    if (isGrid(sand)) {
+        // A hand whose rest follows the surface has a copy of the heights of the start.
+        memory.add("datum of the hand", {0, plane, plane, plane, plane});
+        memory.add("compressing the start", {0, packed, 0, 0, 0});
+    }
+    return memory;
+}
+
+ProcessMemory ProcessMemory::ofMaster(const SandSize& sand, bool checkpoints) {
+    ProcessMemory memory(sand, kMaster, sand.rasterBytes > 0);
+    const std::int64_t plane = bytesOfPlane(sand.field), packed = bytesOfPackedPlane(sand.field);
+    const std::int64_t ground = sand.ground ? plane : 0;
+    memory.add("raster", {sand.rasterBytes, 0, 0, 0, 0});
+    memory.add("heights of the scene", {plane + ground, plane, 0, 0, 0});
+    if (isGrid(sand)) {
+        // The message for the ranks, and the header of the journal, which grows while it is encoded.
+        memory.add("message and journal's header", {0, 4 * packed, 0, 0, 0});
+    }
+    if (isGrid(sand) && checkpoints) {
+        // The copy shares what the undo keeps. A thread compresses it into the file, a stripe at a time.
+        const std::int64_t cells = cellsOf(sand.field);
+        memory.add("copy for a checkpoint", {0, 0, 0, 0, bytesOfKeptHeights(cells) + bytesOfKeptFluxes(cells)});
+    }
+    return memory;
+}
+
+ProcessMemory ProcessMemory::ofRank(const SandSize& sand, std::int64_t frameBufferBytes) {
+    ProcessMemory memory(sand, kRank, false);
+    const std::int64_t plane = bytesOfPlane(sand.field), packed = bytesOfPackedPlane(sand.field);
+    const std::int64_t cells = cellsOf(sand.field);
+    const std::int64_t frames = frameBufferBytes;
+    memory.add("frame buffers", {0, frames, frames, frames, frames});
+    if (!isGrid(sand)) {
+        // A height for each nominal cell, from which follows how much sky each place sees.
+        const std::int64_t heights = kNumber * cells;
+        memory.add("drawn heights", {0, heights, heights, heights, heights});
+        return memory;
+    }
+    memory.add("message of the scene", {2 * packed, packed, 0, 0, 0});
+    memory.add("heights of the scene", {0, plane, 0, 0, 0});
+    // Heights, their ranges in blocks of 8 x 8 cells, and the chunks.
+    const std::int64_t drawn = kNumber * cells + cells / 2 + (sand.ground ? cells : 0);
+    memory.add("drawn heights", {0, drawn, drawn, drawn, drawn});
+    // Rough sand that is seen is drawn at every cell, with 16 bytes for a vertex, but not more finely than the pixels
+    // show. Chunks of 32 x 32 quads share edges. A pixel takes eight bytes of a frame buffer or more.
+    const std::int64_t seen = std::min(cells, frames);
+    const std::int64_t vertices = 17 * seen;
+    memory.add("vertices", {0, 0, vertices, vertices, vertices});
+    // Places of changes, and triangles that the driver holds.
+    const std::int64_t places = cells / 2, triangles = 8 * seen;
+    memory.add("work of drawing", {0, 0, places + triangles, places + 2 * seen, places + triangles});
+    return memory;
+}
+
+std::int64_t ProcessMemory::bytes(Stage stage) const {
+    std::int64_t sum = 0;
+    for (const MemoryPart& part : parts_) {
+        sum += part.bytes.at(static_cast<std::size_t>(stage));
+    }
+    return sum;
+}
+
+MemoryFigures ProcessMemory::figures() const {
+    return {bytes(Stage::rest), std::max({bytes(Stage::read), bytes(Stage::made), bytes(Stage::swept)}),
+            bytes(Stage::moving)};
+}
+
+void requireProcess(std::int64_t needed, std::int64_t freeBytes, const std::string& file, const sand::SizeText& size,
+                    std::string_view process) {
+    if (needed > freeBytes) {
+        throw base::InputError(
+            fmt::format("{}: {} need {} in the {}, and {} are free: {}, or a machine with more memory", file, size.what,
+                        bytesInWords(needed), process, bytesInWords(freeBytes), size.fewer));
+    }
+}
+
+std::string bytesInWords(std::int64_t bytes) {
+    constexpr double kMebibyte = 1 << 20, kGibibyte = 1 << 30;
+    const auto number = static_cast<double>(bytes);
+    return number < kGibibyte ? fmt::format("{:.0f} MiB", number / kMebibyte)
+                              : fmt::format("{:.1f} GiB", number / kGibibyte);
+}
+
+}  // namespace scene

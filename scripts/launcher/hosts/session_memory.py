@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks, before a session starts, that each of its hosts has the memory for the processes that it gets (docs/scenes.md)."""
+
+import collections
+import pathlib
+import re
+import resource
+
+from base.bad_input import BadInput
+from job.rank_hosts import HERE
+
+MEMINFO, GROUP = pathlib.Path("/proc/meminfo"), pathlib.Path("/sys/fs/cgroup")
+AVAILABLE = re.compile(r"^MemAvailable:\s*(\d{1,15}) kB", re.MULTILINE)
+# A line of `sandwall-check --memory`: the process, its bytes at rest, at the start and with all sand moving, and shared ones.
+LINE = re.compile(r"(server|master|[1-9]\d{0,5}) (\d{1,18}) (\d{1,18}) (\d{1,18}) (\d{1,18})")
+PROCESS = {"server": "haptic server", "master": "master", "rank": "rank"}
+ADVICE = "use fewer cells, leave checkpoints out with --checkpoint 0, or take a machine with more memory"
+
+
+class Need:
+    """Memory of one process [byte]. `shared` is the part that other processes of its `kind` on the same host share."""
+
+    def __init__(self, kind, most, shared):
+        self.kind, self.most, self.shared = kind, most, shared
+
+
+def needs_of(lines):
+    """Returns {"server", "master" or rank: Need} from the output of `sandwall-check --memory`. Skips other lines."""
+    found = {}
+    for match in filter(None, map(LINE.fullmatch, lines.splitlines())):
+        who = match[1] if match[1] in ("server", "master") else int(match[1])
+        figures = [int(number) for number in match.groups()[1:]]
+        found[who] = Need(who if who in ("server", "master") else "rank", max(figures[:3]), figures[3])
+    return found
+
+
+def free_here():
+    """Returns the memory that is free on this machine, or in this control group [byte], or None if it is not known."""
+    found = []
+    try:
+        if match := AVAILABLE.search(MEMINFO.read_text(encoding="ascii")):
+            found.append(1024 * int(match[1]))
+        most = (GROUP / "memory.max").read_text(encoding="ascii").strip()
+        if most.isdecimal():
+            found.append(max(int(most) - int((GROUP / "memory.current").read_text(encoding="ascii")), 0))
+    except (OSError, ValueError):
+        pass  # no such limit
+    return min(found, default=None)
+
+
+def in_words(number):
+    """Returns a number of bytes for a person, as our programs write it."""
+    return f"{number / 2 ** 20:.0f} MiB" if number < 2 ** 30 else f"{number / 2 ** 30:.1f} GiB"
+
+
+def require(scene, needs, names, free):
+    """Throws BadInput if a process has a limit below its need, or a host lacks the memory for all of its processes.
+
+    `names` has the host of every render rank. `free` is {host: free memory}; a host that is not in it is not checked. The
+    haptic server and the master run on this machine.
+    """
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    largest = max(needs.values(), key=lambda need: need.most, default=None)
+    if largest and limit != resource.RLIM_INFINITY and largest.most > limit:
+        raise BadInput(f"{scene}: needs {in_words(largest.most)} in the {PROCESS[largest.kind]}, and ulimit -v allows {in_words(limit)}; "
+                       "raise the limit, or use fewer cells")
+    on = collections.defaultdict(list)
+    for who, need in needs.items():
+        on[names[who - 1] if need.kind == "rank" and who <= len(names) else HERE].append(need)
+    for host, processes in on.items():
+        needed, there = total(processes), free.get(host)
+        if there is not None and needed > there:
+            name = "this machine" if host == HERE else host
+            raise BadInput(f"{scene}: needs {in_words(needed)} on {name} for {listed(processes)}, where {in_words(there)} are free; {ADVICE}")
+
+
+def total(processes):
+    """Returns the memory of processes on one host [byte]. Those of one kind share their code."""
+    shared = {kind: max(need.shared for need in processes if need.kind == kind) for kind in {need.kind for need in processes}}
+    return sum(need.most - need.shared for need in processes) + sum(shared.values())
+
+
+def listed(processes):
+    """Returns text such as "the haptic server, the master and 2 ranks"."""
+    ranks = sum(need.kind == "rank" for need in processes)
+    words = [f"the {PROCESS[kind]}" for kind in ("server", "master") if any(need.kind == kind for need in processes)]
+    words += [f"{ranks} rank{'s' if ranks > 1 else ''}"] if ranks else []
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stated memory of a process is compared with what its structures take, and with the resident memory of sand that
+// all moves.
+#include "scene/model/session_memory.hpp"
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "sand/grid/erosion.hpp"
+#include "sand/grid/tile_hash.hpp"
+#include "sand/model/grid_codec.hpp"
+#include "sand/replica.hpp"
+#include "scene/model/scene.hpp"
+
+namespace {
+
+using scene::ProcessMemory;
+using scene::SandSize;
+using scene::Stage;
+
+constexpr int kSide = 1024;
+
+/// Returns a scene whose heights are random numbers of 28 bits, so that nothing of it can be compressed and all moves.
+scene::Scene roughest(int side) {
+    scene::Scene scene;
+    scene.rules.columns = scene.rules.rows = side;
+    scene.terrain = sand::HeightField(side, side, 1.0);
+    scene.rules.tuning.threshold = scene.rules.tuning.startThreshold = sand::kUnitsPerCell / 2;
+    scene.rules.tuning.sweepsPerStep = 4;
+    scene.rules.tuning.tool.radius = 12 * sand::kProbePerCell;
+    std::mt19937 random(7);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            scene.terrain.setHeight(x, y, static_cast<std::int32_t>(random() >> 5U) - (1 << 26));
+        }
+    }
+    return scene;
+}
+
+std::int64_t partOf(const ProcessMemory& process, const std::string& name, Stage stage) {
+    for (const scene::MemoryPart& part : process.parts()) {
+        if (part.name == name) {
+            return part.bytes.at(static_cast<std::size_t>(stage));
+        }
+    }
+    ADD_FAILURE() << "no part " << name;
+    return 0;
+}
+
+TEST(SessionMemory, StatesThePlanesThatTheSandAllocates) {
+    for (const auto& [columns, rows] : {std::pair(300, 200), {1024, 1024}, {1025, 7}, {1, 1}}) {
+        const sand::FieldSize size{columns, rows, false};
+        const sand::HeightField field(columns, rows, 1.0);
+        const auto plane = static_cast<std::int64_t>(field.cells().bytes());
+        EXPECT_EQ(scene::bytesOfPlane(size), plane) << columns << " x " << rows;
+        sand::Rules rules;
+        rules.columns = columns;
+        rules.rows = rows;
+        const ProcessMemory server = ProcessMemory::ofServer({size});
+        EXPECT_EQ(partOf(server, "heights", Stage::moving), plane);
+        EXPECT_EQ(partOf(server, "fluxes", Stage::rest), 0);
+        const sand::grid::Erosion erosion(field, rules);
+        EXPECT_LE(partOf(server, "fluxes", Stage::moving), static_cast<std::int64_t>(erosion.bytes()));
+        if (columns * rows >= kSide * kSide) {
+            EXPECT_GE(
+                partOf(server, "fluxes", Stage::moving) + partOf(server, "marks of blocks and hashes", Stage::moving),
+                static_cast<std::int64_t>(erosion.bytes()));
+        }
+        EXPECT_EQ(partOf(ProcessMemory::ofServer({size, true}), "rock and walls", Stage::rest), plane);
+    }
+}
+
+TEST(SessionMemory, BoundsHeightsThatCannotBeCompressed) {
+    const scene::Scene scene = roughest(kSide);
+    const auto packed =
+        static_cast<std::int64_t>(sand::packedCells(scene.terrain.cells(), scene.terrain.bounds())->size());
+    const std::int64_t stated = scene::bytesOfPackedPlane(sand::FieldSize::of(scene.rules));
+    EXPECT_GE(stated, packed);
+    EXPECT_LE(stated, packed * 12 / 10);
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers take memory of their own
+/// Returns a field of /proc/self/status, such as "VmHWM" [byte].
+std::int64_t status(const std::string& field) {
+    std::ifstream stream("/proc/self/status");
+    for (std::string word; stream >> word;) {
+        if (std::int64_t kilobytes = 0; word == field + ":" && stream >> kilobytes) {
+            return kilobytes * 1024;
+        }
+    }
+    return 0;
+}
+
+/// Runs `act` in a child, and returns the largest resident memory of the child from there on [byte]. What it had before
+/// does not count.
+std::int64_t peakOf(const std::function<void(const std::function<void()>& begins)>& act) {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(pipe(ends.data()), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        std::int64_t before = 0;
+        act([&before] {
+            (void)malloc_trim(0);
+            std::ofstream("/proc/self/clear_refs") << "5";  // sets VmHWM to VmRSS
+            before = status("VmRSS");
+        });
+        const std::int64_t peak = status("VmHWM") - before;
+        _exit(write(ends[1], &peak, sizeof peak) == sizeof peak ? 0 : 1);
+    }
+    close(ends[1]);
+    std::int64_t peak = 0;
+    EXPECT_EQ(read(ends[0], &peak, sizeof peak), static_cast<ssize_t>(sizeof peak));
+    close(ends[0]);
+    int ended = 0;
+    EXPECT_EQ(waitpid(child, &ended, 0), child);
+    EXPECT_EQ(ended, 0);
+    return peak;
+}
+
+/// Lets all sand move, and then begins a stroke. All sand still moves after it.
+void moveAll(sand::Replica& replica) {
+    const auto step = [&replica](bool engaged) {
+        sand::Step next{1, replica.stepNumber() + 1, engaged, {}};
+        next.path = {{100 * sand::kProbePerCell, 100 * sand::kProbePerCell, 0}};
+        next.sweeps = replica.wholeSweeps(next);
+        replica.apply(next);
+        ASSERT_EQ(replica.leftOut(), "");
+        (void)replica.takeChange();
+    };
+    step(false);  // all sand moves from here on
+    step(true);
+    step(true);
+}
+
+std::int64_t sumOf(const ProcessMemory& process, const std::vector<std::string>& names, Stage stage) {
+    std::int64_t sum = 0;
+    for (const std::string& name : names) {
+        sum += partOf(process, name, stage);
+    }
+    return sum;
+}
+
+void expectStated(std::int64_t stated, std::int64_t taken) {
+    EXPECT_GE(stated, taken) << "more than stated";
+    EXPECT_LE(stated, taken * 12 / 10) << "a fifth more than needed";
+}
+
+const std::vector<std::string> kReplica{"heights", "fluxes", "heights of the start, compressed", "sand for an undo",
+                                        "marks of blocks and hashes"};
+
+TEST(SessionMemory, HoldsForAReplicaWhoseSandAllMoves) {
+    const std::int64_t taken = peakOf([](const auto& begins) {
+        const scene::Scene scene = roughest(kSide);
+        begins();
+        sand::Replica replica(scene);
+        moveAll(replica);
+    });
+    expectStated(sumOf(ProcessMemory::ofServer({{kSide, kSide, false}}), kReplica, Stage::moving), taken);
+}
+
+TEST(SessionMemory, HoldsWhileACheckpointIsWritten) {
+    const std::int64_t taken = peakOf([](const auto& begins) {
+        const scene::Scene scene = roughest(kSide);
+        begins();
+        sand::Replica replica(scene);
+        moveAll(replica);
+        (void)replica.copyState().encode();
+    });
+    std::vector<std::string> parts = kReplica;
+    parts.insert(parts.end(), {"copy for a checkpoint", "compressed checkpoint"});
+    expectStated(sumOf(ProcessMemory::ofMaster({{kSide, kSide, false}}), parts, Stage::moving), taken);
+    EXPECT_EQ(sumOf(ProcessMemory::ofMaster({{kSide, kSide, false}}, false), kReplica, Stage::moving),
+              ProcessMemory::ofMaster({{kSide, kSide, false}}, false).bytes(Stage::moving) -
+                  partOf(ProcessMemory::ofMaster({}), "program and libraries", Stage::moving))
+        << "without checkpoints";
+}
+#endif
+
+TEST(SessionMemory, GrowsWithTheCells) {
+    for (const auto& of : {&ProcessMemory::ofServer}) {
+        const scene::MemoryFigures small = of({{512, 512, false}}).figures(),
+                                   large = of({{1024, 1024, false}}).figures();
+        EXPECT_LT(small.rest, large.rest);
+        EXPECT_LT(small.peak, large.peak);
+        EXPECT_LT(small.moving, large.moving);
+        EXPECT_EQ(large.most(), std::max({large.rest, large.peak, large.moving}));
+    }
+}
+
+TEST(SessionMemory, OfATinIsThatOfItsVertices) {
+    SandSize tin{{512, 512, true}};
+    const std::int64_t without = ProcessMemory::ofRank(tin, 0).figures().most();
+    tin.vertices = 1000000;
+    EXPECT_EQ(ProcessMemory::ofRank(tin, 0).figures().most() - without, std::int64_t{320} * 1000000);
+}
+
+}  // namespace

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests that a session whose processes do not fit the memory of a host is refused in one line before anything starts."""
+
+import pathlib
+import resource
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from launcher_fixture import CHECK, LauncherTest
+from base.bad_input import BadInput
+from hosts import session_memory
+from job.rank_hosts import HERE
+
+MIB = 2 ** 20
+LINES = f"""server {10 * MIB} {20 * MIB} {30 * MIB} {4 * MIB}
+master {10 * MIB} {90 * MIB} {50 * MIB} {4 * MIB}
+1 {10 * MIB} {20 * MIB} {60 * MIB} {20 * MIB}
+2 {10 * MIB} {20 * MIB} {60 * MIB} {20 * MIB}
+"""
+
+
+class Needs(unittest.TestCase):
+    def setUp(self):
+        self.needs = session_memory.needs_of(LINES)
+
+    def refusal(self, names, free):
+        try:
+            session_memory.require("s.toml", self.needs, names, free)
+        except BadInput as complaint:
+            return str(complaint)
+        return ""
+
+    def test_other_lines_are_skipped(self):
+        self.assertEqual(list(self.needs), ["server", "master", 1, 2])
+        self.assertEqual(session_memory.needs_of("made-up\nserver 1 2 3\n1 2 3 4 -5\n0 1 2 3 4\n"), {})
+
+    def test_the_largest_figure_counts_and_code_only_once(self):
+        needed = (30 + 90 + 60 + 40) * MIB
+        self.assertEqual(self.refusal([HERE, HERE], {HERE: needed}), "")
+        self.assertEqual(self.refusal([HERE, HERE], {HERE: needed - 1}),
+                         "s.toml: needs 220 MiB on this machine for the haptic server, the master and 2 ranks, where 220 MiB are free; "
+                         + session_memory.ADVICE)
+
+    def test_each_host_has_the_ranks_of_the_wall_file(self):
+        self.assertEqual(self.refusal([HERE, "n1"], {HERE: 180 * MIB, "n1": 60 * MIB}), "")
+        self.assertTrue(self.refusal([HERE, "n1"], {HERE: 180 * MIB, "n1": 59 * MIB}).startswith(
+            "s.toml: needs 60 MiB on n1 for 1 rank, where 59 MiB are free; "))
+        self.assertEqual(self.refusal([HERE, "n1"], {HERE: 180 * MIB}), "", "a host whose memory is not known")
+
+    def test_five_percent_more_than_needed_suffice(self):
+        self.assertEqual(self.refusal([HERE, HERE], {HERE: 220 * MIB * 105 // 100}), "")
+
+    def test_a_limit_of_the_process_counts(self):
+        with mock.patch.object(resource, "getrlimit", return_value=(89 * MIB, 89 * MIB)):
+            self.assertIn("needs 90 MiB in the master, and ulimit -v allows 89 MiB", self.refusal([HERE, HERE], {}))
+        with mock.patch.object(resource, "getrlimit", return_value=(90 * MIB, 90 * MIB)):
+            self.assertEqual(self.refusal([HERE, HERE], {}), "")
+
+    def test_the_limit_of_a_control_group_counts(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "meminfo").write_text("MemTotal: 9 kB\nMemAvailable:    2048 kB\n")
+            with mock.patch.object(session_memory, "MEMINFO", folder / "meminfo"), mock.patch.object(session_memory, "GROUP", folder):
+                self.assertEqual(session_memory.free_here(), 2 * MIB)
+                (folder / "memory.max").write_text("max\n")
+                self.assertEqual(session_memory.free_here(), 2 * MIB)
+                (folder / "memory.max").write_text(f"{3 * MIB}\n")
+                (folder / "memory.current").write_text(f"{2 * MIB}\n")
+                self.assertEqual(session_memory.free_here(), MIB)
+
+
+class Session(LauncherTest):
+    """A session with a made-up sandwall-check, which states the memory, and an mpirun that leaves a mark."""
+
+    def setUp(self):
+        super().setUp()
+        for name in ("sandwall-master", "sandwall-render-node", "sandwall-haptic-server"):
+            self.script(name, "#!/bin/sh\necho '{\"build\": \"0123456789abcdef\"}'\n")
+        self.script("mpirun", "#!/bin/sh\necho started >> \"${0%/*}/../started\"\n")
+
+    def server_needs(self, number):
+        """Makes the server need so many bytes, and keeps the question."""
+        answer = f'[ "$2" = --memory ] && {{ echo "$*" > "{self.folder}/asked"; echo "server 1 1 {number} 0"; echo "master 1 1 1 0"; echo "1 1 1 1 0"; exit; }}'
+        self.script("sandwall-check", CHECK.replace("\n", f"\n{answer}\n", 1))
+
+    def test_that_does_not_fit_is_refused_before_mpirun_starts(self):
+        self.server_needs(2 ** 50)
+        line = self.refused(["-"], "--device", "script:gis", "--gl", "osmesa")
+        self.assertRegex(line, r"^sandwall: scene\.toml: needs 1048576\.0 GiB on this machine for the haptic server, the master and 1 rank, where ")
+        self.assertFalse((self.folder / "started").exists())
+        self.assertNotIn("--no-checkpoints", (self.folder / "asked").read_text())
+
+    def test_that_has_no_server_of_its_own_counts_none(self):
+        self.server_needs(2 ** 50)
+        self.start(["-"], "--gl", "osmesa", "--restarts", "0")
+        self.assertTrue((self.folder / "started").exists())
+
+    def test_that_writes_no_checkpoints_asks_for_the_memory_without(self):
+        self.server_needs(2 ** 50)
+        self.refused(["-"], "--device", "script:gis", "--gl", "osmesa", "--checkpoint", "0")
+        self.assertIn("--no-checkpoints", (self.folder / "asked").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
