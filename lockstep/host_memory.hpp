@@ -31,7 +31,7 @@ struct RankNeed {
 };
 
 /// Returns the text of a message about the host that lacks most memory; nullopt if all ranks fit their hosts. `needs`
-/// has the need of each of `ranks`, of which the first is the master.
+/// has the need of each rank.
 [[nodiscard]] std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks,
                                                       const std::vector<RankNeed>& needs);
 

@@ -15,10 +15,10 @@
 /// The master's checks before the first frame: the hosts can hold the sand, and every rank can take part.
 namespace master {
 
-/// What the memory of a session depends on, except its sand.
+/// Ranks and wall of a session, as far as memory depends on them.
 struct MemoryUse {
     const std::vector<lockstep::RankHost>& hosts;  // of all ranks
-    const walls::Wall& wall;                       // its tiles are drawn by the ranks
+    const walls::Wall& wall;                       // each rank draws one of its tiles
     bool checkpoints = true;                       // whether the master writes checkpoints
 };
 

@@ -9,15 +9,16 @@
 
 namespace walls {
 
-/// Returns a table for a person: the memory of each kind of process in a session on sand of this size, and of each host
-/// of the wall, unless `wall` is null. Without a wall, a rank has the picture of the desktop wall.
+/// Returns a table for a person: the memory of each kind of process of a session on this sand. With a `wall`, also that
+/// of each of its hosts. If `wall` is null, a rank has the picture of the desktop wall.
 [[nodiscard]] std::string memoryTable(const scene::SandSize& sand, const Wall* wall);
 
-/// Returns one line for each process of a session of this scene: "server", "master" or its rank, and four numbers
-/// [byte]: its memory at rest, at the peak of the start and with all sand moving, and the part of them that processes
-/// of its kind on one host share. Launchers read these lines. Reads no pixels. If edges of the raster may be cut off,
-/// all figures are those of reading. Returns no lines for a terrain of points. Throws base::InputError. Without
-/// `checkpoints`, the master writes none.
+/// Returns one line for each process of a session of this scene. A line has "server", "master" or a rank, and four
+/// numbers [byte]. They are the memory at rest, at the peak of the start and with all sand moving, and the shared part.
+/// Processes of one kind on a host have the shared part once. Launchers read these lines.
+///
+/// Reads no pixels: edges without data count, although a session cuts them off. Returns no lines for a terrain of
+/// points. Without `checkpoints`, the master writes none. Throws base::InputError.
 [[nodiscard]] std::string memoryLines(const std::string& scene, const Wall& wall, bool checkpoints);
 
 }  // namespace walls

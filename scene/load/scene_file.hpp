@@ -11,7 +11,7 @@ namespace scene {
 
 /// Size of a field before its heights are made.
 struct FieldToMake : sand::FieldSize {
-    bool ground = false;  // whether it gets rock or walls, or may get walls where the file has no data
+    bool ground = false;  // whether it gets rock, or walls where the file has no data
 };
 
 /// Checks that are called before the memory of a scene is taken, and the progress of its reading. The checks throw if
@@ -25,7 +25,8 @@ struct SizeChecks {
     /// pixels are read. For other rasters, it is after the edges without data have been cut off. It is not called for a
     /// terrain of points, which has no field.
     std::function<void(const FieldToMake& size)> field{};
-    /// Receives the size of a raster from which edges may be cut off, before its pixels are read. `field` follows.
+    /// Receives the size of a raster from which edges may be cut off, before its pixels are read. It is not known yet
+    /// whether the field gets walls. `field` follows.
     std::function<void(const FieldToMake& atMost)> fieldAtMost{};
     /// Receives the part of the terrain that has been read or made, 0 to 1. It never goes back. It must not throw.
     std::function<void(double share)> progress{};

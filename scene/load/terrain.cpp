@@ -90,7 +90,7 @@ public:
         if (size.complete || terrain_.has("bedrock")) {
             askOfField(size.columns, size.rows, !size.complete);
         } else if (checks_.fieldAtMost) {
-            checks_.fieldAtMost(sizeOf(size.columns, size.rows, true));
+            checks_.fieldAtMost(sizeOf(size.columns, size.rows, false));
         }
     }
     /// Called with the size of the field. Returns at once if the size was checked before.

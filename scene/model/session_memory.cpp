@@ -11,8 +11,6 @@ namespace {
 constexpr std::int64_t kMebibyte = 1 << 20;
 constexpr std::int64_t kNumber = sizeof(std::int32_t);  // [byte]
 
-constexpr std::int64_t kPerVertex = 320;  // [byte] of a TIN's vertex in a replica
-
 std::int64_t cellsOf(const sand::FieldSize& field) { return std::int64_t{field.columns} * field.rows; }
 
 // Numbers that are kept for an undo or a checkpoint are packed (sand/grid/packed_cells.hpp). These are the bits that
@@ -20,7 +18,8 @@ std::int64_t cellsOf(const sand::FieldSize& field) { return std::int64_t{field.c
 std::int64_t bytesOfKeptHeights(std::int64_t cells) { return cells * 5 / 2; }
 std::int64_t bytesOfKeptFluxes(std::int64_t cells) { return 4 * cells; }
 
-bool isGrid(const SandSize& sand) { return !sand.field.nominal; }
+/// Returns whether the sand has a height per cell.
+bool hasHeights(const SandSize& sand) { return sand.field.bytesOfReplica().has_value(); }
 
 }  // namespace
 
@@ -31,7 +30,7 @@ struct ProcessMemory::Fixed {
     std::int64_t start = 0;  // more at the start: a rank compiles shaders
 };
 constexpr ProcessMemory::Fixed kServer{8 * kMebibyte, 10 * kMebibyte};
-constexpr ProcessMemory::Fixed kMaster{12 * kMebibyte, 18 * kMebibyte};
+constexpr ProcessMemory::Fixed kMaster{16 * kMebibyte, 18 * kMebibyte};
 constexpr ProcessMemory::Fixed kRank{44 * kMebibyte, 24 * kMebibyte, 32 * kMebibyte};
 constexpr std::int64_t kImport = 32 * kMebibyte;  // GDAL and its libraries, of a process that reads a raster
 
@@ -55,11 +54,8 @@ std::int64_t bytesOfPackedPlane(const sand::FieldSize& field) {
 
 SandSize SandSize::of(const sand::Start& start) {
     SandSize size{sand::FieldSize::of(start.rules), start.ground != nullptr};
-    if (start.tin != nullptr) {
-        size.vertices = static_cast<std::int64_t>(start.tin->places.size());
-    } else {
-        size.toolBytes = start.leastBytes() - size.field.leastBytes();
-    }
+    (size.field.bytesOfReplica() ? size.toolBytes : size.meshBytes) =
+        start.leastBytes() - size.field.bytesOfReplica().value_or(0);
     return size;
 }
 
@@ -71,9 +67,8 @@ ProcessMemory::ProcessMemory(const SandSize& sand, const Fixed& fixed, bool read
 }
 
 void ProcessMemory::addReplica(const SandSize& sand) {
-    if (!isGrid(sand)) {
-        const std::int64_t mesh = kPerVertex * sand.vertices;
-        add("triangles", {0, mesh, mesh, mesh, mesh});
+    if (!hasHeights(sand)) {
+        add("triangles", {0, sand.meshBytes, sand.meshBytes, sand.meshBytes, sand.meshBytes});
         return;
     }
     const std::int64_t plane = bytesOfPlane(sand.field), packed = bytesOfPackedPlane(sand.field);
@@ -82,8 +77,8 @@ void ProcessMemory::addReplica(const SandSize& sand) {
     // Reading them takes no memory. Blocks at rest give theirs back after some steps.
     add("fluxes", {0, 0, 2 * plane, 0, 2 * plane});
     add("heights of the start, compressed", {0, packed, packed, packed, packed});
-    // The heights before the stroke, by tiles: of the whole field if the stroke began before the first sweep, or if all
-    // sand has moved since. And the fluxes before it, if all sand moved when it began.
+    // The heights before the stroke, by tiles. All tiles are kept if the stroke began before the first sweep, or if all
+    // sand has moved since. The fluxes before the stroke are kept if sand moved when it began.
     const std::int64_t before = bytesOfKeptHeights(cells);
     add("sand for an undo", {0, 0, before, before, before + bytesOfKeptFluxes(cells)});
     // Per block of 8 x 8 cells: marks, and runs of blocks. Per tile of 32 x 32 cells: hash and last movement.
@@ -100,7 +95,7 @@ ProcessMemory ProcessMemory::ofServer(const SandSize& sand) {
     const std::int64_t ground = sand.ground ? plane : 0;
     memory.add("raster", {sand.rasterBytes, 0, 0, 0, 0});
     memory.add("heights of the scene", {plane + ground, plane, 0, 0, 0});
-    if (isGrid(sand)) {
+    if (hasHeights(sand)) {
         // A hand whose rest follows the surface has a copy of the heights of the start.
         memory.add("datum of the hand", {0, plane, plane, plane, plane});
         memory.add("compressing the start", {0, packed, 0, 0, 0});
@@ -114,11 +109,11 @@ ProcessMemory ProcessMemory::ofMaster(const SandSize& sand, bool checkpoints) {
     const std::int64_t ground = sand.ground ? plane : 0;
     memory.add("raster", {sand.rasterBytes, 0, 0, 0, 0});
     memory.add("heights of the scene", {plane + ground, plane, 0, 0, 0});
-    if (isGrid(sand)) {
+    if (hasHeights(sand)) {
         // The message for the ranks, and the header of the journal, which grows while it is encoded.
         memory.add("message and journal's header", {0, 4 * packed, 0, 0, 0});
     }
-    if (isGrid(sand) && checkpoints) {
+    if (hasHeights(sand) && checkpoints) {
         // The copy shares what the undo keeps. A thread compresses it into the file, a stripe at a time.
         const std::int64_t cells = cellsOf(sand.field);
         memory.add("copy for a checkpoint", {0, 0, 0, 0, bytesOfKeptHeights(cells) + bytesOfKeptFluxes(cells)});
@@ -132,7 +127,7 @@ ProcessMemory ProcessMemory::ofRank(const SandSize& sand, std::int64_t frameBuff
     const std::int64_t cells = cellsOf(sand.field);
     const std::int64_t frames = frameBufferBytes;
     memory.add("frame buffers", {0, frames, frames, frames, frames});
-    if (!isGrid(sand)) {
+    if (!hasHeights(sand)) {
         // A height for each nominal cell, from which follows how much sky each place sees.
         const std::int64_t heights = kNumber * cells;
         memory.add("drawn heights", {0, heights, heights, heights, heights});
@@ -154,7 +149,7 @@ ProcessMemory ProcessMemory::ofRank(const SandSize& sand, std::int64_t frameBuff
     return memory;
 }
 
-std::int64_t ProcessMemory::bytes(Stage stage) const {
+std::int64_t ProcessMemory::bytes(MemoryStage stage) const {
     std::int64_t sum = 0;
     for (const MemoryPart& part : parts_) {
         sum += part.bytes.at(static_cast<std::size_t>(stage));
@@ -163,8 +158,9 @@ std::int64_t ProcessMemory::bytes(Stage stage) const {
 }
 
 MemoryFigures ProcessMemory::figures() const {
-    return {bytes(Stage::rest), std::max({bytes(Stage::read), bytes(Stage::made), bytes(Stage::swept)}),
-            bytes(Stage::moving)};
+    return {bytes(MemoryStage::rest),
+            std::max({bytes(MemoryStage::read), bytes(MemoryStage::made), bytes(MemoryStage::swept)}),
+            bytes(MemoryStage::moving)};
 }
 
 void requireProcess(std::int64_t needed, std::int64_t freeBytes, const std::string& file, const sand::SizeText& size,

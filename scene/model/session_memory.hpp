@@ -18,14 +18,14 @@
 namespace scene {
 
 /// Stages of a process in which its memory differs.
-enum class Stage : std::uint8_t {
+enum class MemoryStage : std::uint8_t {
     read,   // it reads the scene's file
     made,   // it makes its replica, and what it sends or draws
     swept,  // the first sweep visits all cells
     rest,   // all sand is at rest, and a stroke is kept for an undo
     moving  // all sand moves, and has since a stroke that is kept; the master writes a checkpoint
 };
-inline constexpr std::size_t kStages = 5;
+inline constexpr std::size_t kMemoryStages = 5;
 
 /// Memory at the points of a session that are printed [byte].
 struct MemoryFigures {
@@ -42,16 +42,16 @@ struct MemoryFigures {
 /// One kind of data of a process, with its bytes in each stage.
 struct MemoryPart {
     std::string_view name;
-    std::array<std::int64_t, kStages> bytes{};  // [byte], by Stage
+    std::array<std::int64_t, kMemoryStages> bytes{};  // [byte], by MemoryStage
 };
 
-/// What the memory of a session depends on.
+/// Size of the sand of a session, as far as memory depends on it.
 struct SandSize {
     sand::FieldSize field;
     bool ground = false;           // whether it has rock or wall cells
     std::int64_t rasterBytes = 0;  // memory of the pixels while a raster is read [byte]
     std::int64_t toolBytes = 0;    // of a coarse phase [byte]
-    std::int64_t vertices = 0;     // of a TIN; 0 for a height field, and before a TIN is made
+    std::int64_t meshBytes = 0;    // of triangles; 0 for a height field, and before the triangles are made
 
     /// Returns the size of the sand that `start` has.
     [[nodiscard]] static SandSize of(const sand::Start& start);
@@ -68,14 +68,16 @@ public:
     [[nodiscard]] static ProcessMemory ofRank(const SandSize& sand, std::int64_t frameBufferBytes);
 
     [[nodiscard]] const std::vector<MemoryPart>& parts() const { return parts_; }
-    [[nodiscard]] std::int64_t bytes(Stage stage) const;
+    [[nodiscard]] std::int64_t bytes(MemoryStage stage) const;
     [[nodiscard]] MemoryFigures figures() const;
     /// Returns the part of every figure that processes of the same kind on one host share, because it is code [byte].
     [[nodiscard]] std::int64_t shared() const { return shared_; }
 
 private:
     ProcessMemory(const SandSize& sand, const Fixed& fixed, bool readsRaster);
-    void add(std::string_view name, const std::array<std::int64_t, kStages>& bytes) { parts_.push_back({name, bytes}); }
+    void add(std::string_view name, const std::array<std::int64_t, kMemoryStages>& bytes) {
+        parts_.push_back({name, bytes});
+    }
     void addReplica(const SandSize& sand);
 
     std::vector<MemoryPart> parts_;

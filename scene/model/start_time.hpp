@@ -16,7 +16,7 @@ struct StartTime {
 
     [[nodiscard]] static StartTime of(const SandSize& sand);
     [[nodiscard]] double sum() const { return read + replica + drawing + programs; }
-    /// Returns one line for the user. The sum has a mark, because it is no promise.
+    /// Returns one line for the user. The sum has a mark, because it is an estimate.
     [[nodiscard]] std::string text() const;
 };
 

@@ -47,6 +47,7 @@ scene::Scene tinOf(int side, std::size_t vertices) {
     sand::tin::TinStart start;
     start.places.resize(vertices);
     scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
+    scene.rules.tin = 1;
     return scene;
 }
 

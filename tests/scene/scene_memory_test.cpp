@@ -81,7 +81,7 @@ TEST_F(SceneMemory, IsKnownBeforePixelsAreRead) {
         scene::sizeOfScene(write("s.toml", "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n" + kRest));
     ASSERT_TRUE(size);
     EXPECT_EQ(size->field, (sand::FieldSize{400, 300, false}));
-    EXPECT_TRUE(size->ground) << "cells without data are walls";
+    EXPECT_FALSE(size->ground) << "only the pixels tell whether there are walls";
     EXPECT_EQ(size->rasterBytes, 8 * 400 * 300);
     EXPECT_FALSE(scene::sizeOfScene(write("p.toml", "[terrain]\nkind = \"points\"\nfile = \"none.xyz\"\n")));
     EXPECT_THROW((void)scene::sizeOfScene(write("b.toml", "[terrain]\nkind = \"dem\"\nfile = \"none.tif\"\n")),

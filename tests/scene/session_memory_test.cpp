@@ -23,9 +23,9 @@
 
 namespace {
 
+using scene::MemoryStage;
 using scene::ProcessMemory;
 using scene::SandSize;
-using scene::Stage;
 
 constexpr int kSide = 1024;
 
@@ -46,7 +46,7 @@ scene::Scene roughest(int side) {
     return scene;
 }
 
-std::int64_t partOf(const ProcessMemory& process, const std::string& name, Stage stage) {
+std::int64_t partOf(const ProcessMemory& process, const std::string& name, MemoryStage stage) {
     for (const scene::MemoryPart& part : process.parts()) {
         if (part.name == name) {
             return part.bytes.at(static_cast<std::size_t>(stage));
@@ -66,16 +66,16 @@ TEST(SessionMemory, StatesThePlanesThatTheSandAllocates) {
         rules.columns = columns;
         rules.rows = rows;
         const ProcessMemory server = ProcessMemory::ofServer({size});
-        EXPECT_EQ(partOf(server, "heights", Stage::moving), plane);
-        EXPECT_EQ(partOf(server, "fluxes", Stage::rest), 0);
+        EXPECT_EQ(partOf(server, "heights", MemoryStage::moving), plane);
+        EXPECT_EQ(partOf(server, "fluxes", MemoryStage::rest), 0);
         const sand::grid::Erosion erosion(field, rules);
-        EXPECT_LE(partOf(server, "fluxes", Stage::moving), static_cast<std::int64_t>(erosion.bytes()));
+        EXPECT_LE(partOf(server, "fluxes", MemoryStage::moving), static_cast<std::int64_t>(erosion.bytes()));
         if (columns * rows >= kSide * kSide) {
-            EXPECT_GE(
-                partOf(server, "fluxes", Stage::moving) + partOf(server, "marks of blocks and hashes", Stage::moving),
-                static_cast<std::int64_t>(erosion.bytes()));
+            EXPECT_GE(partOf(server, "fluxes", MemoryStage::moving) +
+                          partOf(server, "marks of blocks and hashes", MemoryStage::moving),
+                      static_cast<std::int64_t>(erosion.bytes()));
         }
-        EXPECT_EQ(partOf(ProcessMemory::ofServer({size, true}), "rock and walls", Stage::rest), plane);
+        EXPECT_EQ(partOf(ProcessMemory::ofServer({size, true}), "rock and walls", MemoryStage::rest), plane);
     }
 }
 
@@ -100,8 +100,8 @@ std::int64_t status(const std::string& field) {
     return 0;
 }
 
-/// Runs `act` in a child, and returns the largest resident memory of the child from there on [byte]. What it had before
-/// does not count.
+/// Runs `act` in a child, and returns the largest resident memory of the child [byte], without what it
+/// had when begins() was called.
 std::int64_t peakOf(const std::function<void(const std::function<void()>& begins)>& act) {
     std::array<int, 2> ends{};
     EXPECT_EQ(pipe(ends.data()), 0);
@@ -141,7 +141,7 @@ void moveAll(sand::Replica& replica) {
     step(true);
 }
 
-std::int64_t sumOf(const ProcessMemory& process, const std::vector<std::string>& names, Stage stage) {
+std::int64_t sumOf(const ProcessMemory& process, const std::vector<std::string>& names, MemoryStage stage) {
     std::int64_t sum = 0;
     for (const std::string& name : names) {
         sum += partOf(process, name, stage);
@@ -164,7 +164,7 @@ TEST(SessionMemory, HoldsForAReplicaWhoseSandAllMoves) {
         sand::Replica replica(scene);
         moveAll(replica);
     });
-    expectStated(sumOf(ProcessMemory::ofServer({{kSide, kSide, false}}), kReplica, Stage::moving), taken);
+    expectStated(sumOf(ProcessMemory::ofServer({{kSide, kSide, false}}), kReplica, MemoryStage::moving), taken);
 }
 
 TEST(SessionMemory, HoldsWhileACheckpointIsWritten) {
@@ -177,10 +177,10 @@ TEST(SessionMemory, HoldsWhileACheckpointIsWritten) {
     });
     std::vector<std::string> parts = kReplica;
     parts.insert(parts.end(), {"copy for a checkpoint", "compressed checkpoint"});
-    expectStated(sumOf(ProcessMemory::ofMaster({{kSide, kSide, false}}), parts, Stage::moving), taken);
-    EXPECT_EQ(sumOf(ProcessMemory::ofMaster({{kSide, kSide, false}}, false), kReplica, Stage::moving),
-              ProcessMemory::ofMaster({{kSide, kSide, false}}, false).bytes(Stage::moving) -
-                  partOf(ProcessMemory::ofMaster({}), "program and libraries", Stage::moving))
+    expectStated(sumOf(ProcessMemory::ofMaster({{kSide, kSide, false}}), parts, MemoryStage::moving), taken);
+    EXPECT_EQ(sumOf(ProcessMemory::ofMaster({{kSide, kSide, false}}, false), kReplica, MemoryStage::moving),
+              ProcessMemory::ofMaster({{kSide, kSide, false}}, false).bytes(MemoryStage::moving) -
+                  partOf(ProcessMemory::ofMaster({}), "program and libraries", MemoryStage::moving))
         << "without checkpoints";
 }
 #endif
@@ -197,10 +197,16 @@ TEST(SessionMemory, GrowsWithTheCells) {
 }
 
 TEST(SessionMemory, OfATinIsThatOfItsVertices) {
-    SandSize tin{{512, 512, true}};
-    const std::int64_t without = ProcessMemory::ofRank(tin, 0).figures().most();
-    tin.vertices = 1000000;
-    EXPECT_EQ(ProcessMemory::ofRank(tin, 0).figures().most() - without, std::int64_t{320} * 1000000);
+    scene::Scene scene;
+    scene.rules.columns = scene.rules.rows = 512;
+    sand::tin::TinStart start;
+    start.places.resize(1000000);
+    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
+    scene.rules.tin = 1;
+    const SandSize tin = SandSize::of(scene);
+    EXPECT_EQ(partOf(ProcessMemory::ofRank(tin, 0), "triangles", scene::MemoryStage::rest),
+              std::int64_t{320} * 1000000);
+    EXPECT_EQ(partOf(ProcessMemory::ofRank(tin, 0), "drawn heights", scene::MemoryStage::rest), 4 * 512 * 512);
 }
 
 }  // namespace

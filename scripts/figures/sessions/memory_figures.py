@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares the memory of a session's processes with the figures that sandwall-check states for them.
 
-Runs a session on each field: on random heights, where all sand moves, with strokes and checkpoints; and on dunes, where a hand
-digs and the sand then rests. Prints a table in Markdown with the resident memory of each process and the stated figure.
+Runs a session on each field. On random heights all sand moves, while a hand digs and checkpoints are written. On dunes a hand
+digs, and the sand then rests. Prints a table in Markdown with the resident memory of each process and the stated figure.
 docs/figures.md has one.
 
 usage: scripts/figures/sessions/memory_figures.py [--sides 2048 4096] [--kinds moving smooth rough] [--seconds 60]
@@ -28,7 +28,7 @@ from sessions.measured_session import Failed, Parser, die_with_parent, processor
 from hosts import session_memory
 
 KINDS = ("moving", "smooth", "rough")
-STROKES = "speed 0.3\ndepth 0.5\n" + "stroke\npoint -0.3 0\npoint -0.2 0.2\n" * 3  # a later stroke begins while all sand moves
+STROKES = "speed 0.05\ndepth 0.5\n" + "stroke\npoint -0.3 0\npoint -0.2 0.2\n" * 12  # a later stroke begins while all sand moves
 NAMES = {"sandwall-haptic-server": "haptic server", "sandwall-master": "master", "sandwall-render-node": "rank"}
 FLOAT_HEADER = start_cost.HEADER.replace("NBITS 16\nPIXELTYPE SIGNEDINT", "NBITS 32\nPIXELTYPE FLOAT").replace("XDIM 30\nYDIM 30", "XDIM 1\nYDIM 1")
 
@@ -78,7 +78,7 @@ def rows_of(kind, side, args):
     with tempfile.TemporaryDirectory(prefix="sandwall-memory-") as name:
         folder, moving = pathlib.Path(name), kind == "moving"
         scene = make_moving(folder, side) if moving else start_cost.make_scene(folder, side, kind == "rough")
-        memory, figures = measure(scene, folder / "out", args, 3 if moving else 0), stated(scene, args)
+        memory, figures = measure(scene, folder / "out", args, 3 if moving else 10), stated(scene, args)
     rows = []
     for program, (now, peak) in memory.items():
         rest, start, moves = figures[program]
