@@ -27,7 +27,7 @@ using scene::MemoryStage;
 using scene::ProcessMemory;
 using scene::SandSize;
 
-constexpr int kSide = 1024;
+constexpr int kSide = 2048;  // where what does not grow with the sand is small
 
 /// Returns a scene whose heights are random numbers of 28 bits, so that nothing of it can be compressed and all moves.
 scene::Scene roughest(int side) {
@@ -57,7 +57,7 @@ std::int64_t partOf(const ProcessMemory& process, const std::string& name, Memor
 }
 
 TEST(SessionMemory, StatesThePlanesThatTheSandAllocates) {
-    for (const auto& [columns, rows] : {std::pair(300, 200), {1024, 1024}, {1025, 7}, {1, 1}}) {
+    for (const auto& [columns, rows] : {std::pair(300, 200), {2048, 2048}, {1025, 7}, {1, 1}}) {
         const sand::FieldSize size{columns, rows, false};
         const sand::HeightField field(columns, rows, 1.0);
         const auto plane = static_cast<std::int64_t>(field.cells().bytes());
