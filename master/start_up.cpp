@@ -15,7 +15,7 @@
 #include "host/regular_file.hpp"
 #include "master/journal/journal.hpp"
 #include "scene/load/memory.hpp"
-#include "walls/frame_buffers.hpp"
+#include "walls/window_size.hpp"
 
 namespace master {
 

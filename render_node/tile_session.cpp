@@ -31,7 +31,6 @@
 #include "render_node/tile_painter.hpp"
 #include "scene/model/scene.hpp"
 #include "scene/model/session_memory.hpp"
-#include "walls/frame_buffers.hpp"
 #include "walls/stereo_change.hpp"
 #include "walls/window_size.hpp"
 

@@ -8,7 +8,6 @@
 #include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
-#include "walls/check_memory.hpp"
 #include "walls/check_scene.hpp"
 #include "walls/desk_windows.hpp"
 #include "walls/wall.hpp"

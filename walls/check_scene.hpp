@@ -17,4 +17,12 @@ namespace walls {
 /// Throws base::InputError if a session could not load it.
 [[nodiscard]] std::string cellsOfScene(const std::string& file);
 
+/// Returns one line for each process of a session of this scene. A line has "server", "master" or a rank, and four
+/// numbers [byte]. They are the memory at rest, at the peak of the start and with all sand moving, and the shared part.
+/// Processes of one kind on a host have the shared part once. Launchers read these lines.
+///
+/// Reads no pixels: edges without data count, although a session cuts them off. Returns no lines for a terrain of
+/// points. Without `checkpoints`, the master writes none. Throws base::InputError.
+[[nodiscard]] std::string memoryLines(const std::string& scene, const Wall& wall, bool checkpoints);
+
 }  // namespace walls

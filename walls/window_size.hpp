@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 
 #include "walls/wall.hpp"
@@ -25,5 +26,9 @@ inline constexpr int kLeastWindowSide = 16;  // [pixel], of a picture that follo
 /// Returns the wall itself for a window of 0 × 0 pixels, which stands for the size in the wall file. Requires
 /// followsWindow(wall).
 [[nodiscard]] Wall shownInWindow(Wall wall, glm::ivec2 window /* [pixel] */);
+
+/// Returns the memory of a rank's pictures with their depth, and of the buffers of its windows [byte]. A rank that
+/// draws in memory has no windows, and takes less.
+[[nodiscard]] std::int64_t frameBufferBytes(const Wall& wall, const Tile& tile);
 
 }  // namespace walls

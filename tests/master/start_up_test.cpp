@@ -14,7 +14,7 @@
 #include "scene/model/scene.hpp"
 #include "tests/support/files/folder_test.hpp"
 #include "tests/support/refusal.hpp"
-#include "walls/frame_buffers.hpp"
+#include "walls/window_size.hpp"
 
 namespace {
 
