@@ -13,10 +13,9 @@ constexpr std::int64_t kNumber = sizeof(std::int32_t);  // [byte]
 
 std::int64_t cellsOf(const sand::FieldSize& field) { return std::int64_t{field.columns} * field.rows; }
 
-// Numbers that are kept for an undo or a checkpoint are packed (sand/grid/packed_cells.hpp). These are the bits that
-// noise on steep sand needs: heights about 17 to 20, each of the two fluxes about 15 [byte].
-std::int64_t bytesOfKeptHeights(std::int64_t cells) { return cells * 5 / 2; }
-std::int64_t bytesOfKeptFluxes(std::int64_t cells) { return 4 * cells; }
+/// Returns the memory of numbers that are kept for an undo or a checkpoint, one for each cell. They are packed
+/// (sand/grid/packed_cells.hpp), but numbers of all sizes take 32 bits each, and a list.
+std::int64_t bytesOfKept(std::int64_t cells) { return cells * 33 / 8; }
 
 /// Returns whether the sand has a height per cell.
 bool hasHeights(const SandSize& sand) { return sand.field.bytesOfReplica().has_value(); }
@@ -79,8 +78,8 @@ void ProcessMemory::addReplica(const SandSize& sand) {
     add("heights of the start, compressed", {0, packed, packed, packed, packed});
     // The heights before the stroke, by tiles. All tiles are kept if the stroke began before the first sweep, or if all
     // sand has moved since. The fluxes before the stroke are kept if sand moved when it began.
-    const std::int64_t before = bytesOfKeptHeights(cells);
-    add("sand for an undo", {0, 0, before, before, before + bytesOfKeptFluxes(cells)});
+    const std::int64_t before = bytesOfKept(cells);
+    add("sand for an undo", {0, 0, before, before, 3 * before});
     // Per block of 8 x 8 cells: marks, and runs of blocks. Per tile of 32 x 32 cells: hash and last movement.
     const std::int64_t marks = cells / 16, runs = cells / 4;
     add("marks of blocks and hashes", {0, marks, runs, marks, runs});
@@ -116,7 +115,7 @@ ProcessMemory ProcessMemory::ofMaster(const SandSize& sand, bool checkpoints) {
     if (hasHeights(sand) && checkpoints) {
         // The copy shares what the undo keeps. A thread compresses it into the file, a stripe at a time.
         const std::int64_t cells = cellsOf(sand.field);
-        memory.add("copy for a checkpoint", {0, 0, 0, 0, bytesOfKeptHeights(cells) + bytesOfKeptFluxes(cells)});
+        memory.add("copy for a checkpoint", {0, 0, 0, 0, 3 * bytesOfKept(cells)});
     }
     return memory;
 }
