@@ -66,8 +66,8 @@ std::optional<scene::Scene> resume(const MemoryUse& use, ProgramOptions& options
     return scene;
 }
 
-/// Returns the scene of the file `file`.
-scene::Scene readScene(const MemoryUse& use, const std::string& file) {
+/// Returns the scene of the file `file`. Tells the ranks of `cluster` the progress.
+scene::Scene readScene(const lockstep::Cluster& cluster, const MemoryUse& use, const std::string& file) {
     scene::SizeCollector sizes;
     const auto require = [&](const scene::FieldToMake& field) {
         requireMemory(use, sizes.with(field), file);
@@ -75,6 +75,14 @@ scene::Scene readScene(const MemoryUse& use, const std::string& file) {
     };
     host::PhaseProgress progress("read", "reads the scene",
                                  [](const std::string& line) { host::printLine("{}", line); });
+    const auto tell = [&](double share) {
+        progress.done(share);
+        if (share < kAllRead) {
+            cluster.progress("the reading of its scene", share);
+        } else {
+            cluster.progressEnds();  // a mesh that is made of the raster cannot tell its progress
+        }
+    };
     scene::Scene scene = scene::loadScene(file, {.raster =
                                                      [&](const scene::RasterSize& size) {
                                                          requireMemoryOfRaster(use.hosts, size, file);
@@ -82,17 +90,7 @@ scene::Scene readScene(const MemoryUse& use, const std::string& file) {
                                                      },
                                                  .field = require,
                                                  .fieldAtMost = require,
-                                                 .progress =
-                                                     [&](double share) {
-                                                         progress.done(share);
-                                                         if (share < kAllRead) {
-                                                             cluster.progress("the reading of its scene", share);
-                                                         } else {
-                                                             // a mesh that is made of the raster cannot tell its
-                                                             // progress
-                                                             cluster.progressEnds();
-                                                         }
-                                                     }});
+                                                 .progress = tell});
     cluster.progressEnds();
     for (const scene::RasterStatement& statement : *scene.statements) {
         host::printLine("{}: {}", statement.file, statement.text());
@@ -126,7 +124,7 @@ scene::Scene openRecording(const MemoryUse& use, ProgramOptions& options) {
 }
 
 /// Returns the scene of --scene, of the journal that is replayed, or of the session that is resumed.
-scene::Scene loadScene(const MemoryUse& use, ProgramOptions& options) {
+scene::Scene loadScene(const lockstep::Cluster& cluster, const MemoryUse& use, ProgramOptions& options) {
     options.session.record.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
         if (std::optional<scene::Scene> scene = resume(use, options)) {
@@ -140,7 +138,7 @@ scene::Scene loadScene(const MemoryUse& use, ProgramOptions& options) {
     if (options.scene.empty()) {
         throw base::InputError("name a --scene, or a journal to --replay");
     }
-    return readScene(use, options.scene);
+    return readScene(cluster, use, options.scene);
 }
 
 /// Returns the name of the scene for the titles of windows: that of its file, or of the folder of its journal.
@@ -235,7 +233,7 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
     walls::Wall wall = loadWall(options);
     const JournalOptions& journal = options.session.record.journal;
     const MemoryUse use{cluster.hosts(), wall, journal.policy != JournalPolicy::off && journal.checkpointSeconds > 0};
-    scene::Scene scene = loadScene(use, options);
+    scene::Scene scene = loadScene(cluster, use, options);
     requireMemory(use, scene, options.scene + options.replay);
     World world{std::move(scene), std::move(wall), {}};
     if (world.scene.packed == nullptr) {  // the scene of a resumed session is still packed

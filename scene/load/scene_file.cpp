@@ -167,7 +167,8 @@ Scene loadScene(const std::filesystem::path& file, const SizeChecks& checks) {
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = toml.valueOr("rim", scene.rules.rim);
     const double terrain = toml.has("tin") ? kTerrain : 1;
-    const bool settle = readTerrain(toml, scene, {checks.raster, checks.field, partOf(checks.progress, 0, terrain)});
+    const bool settle = readTerrain(
+        toml, scene, {checks.raster, checks.field, checks.fieldAtMost, partOf(checks.progress, 0, terrain)});
     readTin(toml, scene, partOf(checks.progress, terrain, 1));
     readTool(toml, scene);
     readMaterial(toml, scene);

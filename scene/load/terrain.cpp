@@ -256,8 +256,8 @@ bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& ch
     std::optional<EsriGrid> survey;
     scene.statements.emplace();
     const double above = terrain.has("bedrock") ? kAbove : 1;
-    const SizeChecks ofSand{checks.raster, checks.field, partOf(checks.progress, 0, above)};
-    const SizeChecks ofRock{checks.raster, checks.field, partOf(checks.progress, above, 1)};
+    const SizeChecks ofSand{checks.raster, checks.field, checks.fieldAtMost, partOf(checks.progress, 0, above)};
+    const SizeChecks ofRock{checks.raster, checks.field, checks.fieldAtMost, partOf(checks.progress, above, 1)};
     scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1, ofSand)
                              : fromSource(file, terrain, kind - 2, scene, survey, ground, ofSand);
     readBedrock(terrain, scene.terrain, ofRock, survey, ground, scene);

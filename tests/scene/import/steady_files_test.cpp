@@ -73,8 +73,10 @@ TEST_F(SteadyFile, APictureThatShrinksIsOneLine) {
                           .type = GDT_Byte,
                           .driver = "PNG"});
     const std::uintmax_t whole = sizeOf("t.png");
-    EXPECT_EQ(test::refusalOf(
-                  [&] { (void)scene::loadImporter("test").readImage(path("t.png"), resizing("t.png", whole / 2)); }),
+    EXPECT_EQ(test::refusalOf([&] {
+                  (void)scene::loadImporter("test").readImage(path("t.png"), scene::Colours::none,
+                                                              resizing("t.png", whole / 2));
+              }),
               changed("t.png", whole, whole / 2));
 }
 
