@@ -172,9 +172,9 @@ void requireProcess(std::int64_t needed, std::int64_t freeBytes, const std::stri
 }
 
 std::string bytesInWords(std::int64_t bytes) {
-    constexpr double kMebibyte = 1 << 20, kGibibyte = 1 << 30;
+    constexpr double kGibibyte = 1 << 30;
     const auto number = static_cast<double>(bytes);
-    return number < kGibibyte ? fmt::format("{:.0f} MiB", number / kMebibyte)
+    return number < kGibibyte ? fmt::format("{:.0f} MiB", number / static_cast<double>(kMebibyte))
                               : fmt::format("{:.1f} GiB", number / kGibibyte);
 }
 
