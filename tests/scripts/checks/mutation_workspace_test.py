@@ -21,6 +21,12 @@ import workspace  # noqa: E402
 from base import process_marks  # noqa: E402
 
 
+def heed_signals():
+    """A test run in the background ignores SIGINT, and one under nohup SIGHUP. So would its children."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 class Copy(unittest.TestCase):
     """The copy of the sources in which bugs are planted."""
 
@@ -127,7 +133,7 @@ sys.exit(run.until_interrupted(lambda: run.try_all(bugs, [space], [])))
 
     def begin(self, *before):
         command = [*before, sys.executable, "-c", self.RUN, self.folder, pathlib.Path(run.__file__).parent]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=heed_signals)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
