@@ -106,9 +106,9 @@ void explainProcesses(const scene::SandSize& sand, Explanation& rows) {
         const auto row = [&](const char* when, std::int64_t bytes, const char* why) {
             rows.memory((process + when).c_str(), static_cast<std::size_t>(bytes), why);
         };
-        row(" at rest", figures.rest, "at most, with a stroke kept for an undo");
-        row(" at the start", figures.peak, "at most, until the sand rests for the first time");
-        row(" while all moves", figures.moving, "at most, with a stroke kept and a checkpoint being written");
+        row(" at rest", figures.rest, "at most; with a stroke kept for an undo");
+        row(" at the start", figures.peak, "at most; until the sand rests for the first time");
+        row(" while all moves", figures.moving, "at most; with a stroke kept and a checkpoint being written");
     };
     explain("haptic server", scene::ProcessMemory::ofServer(sand).figures());
     explain("master", scene::ProcessMemory::ofMaster(sand).figures());

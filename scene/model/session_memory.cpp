@@ -116,6 +116,7 @@ ProcessMemory ProcessMemory::ofMaster(const SandSize& sand, bool checkpoints) {
         // The copy shares what the undo keeps. A thread compresses it into the file, a stripe at a time.
         const std::int64_t cells = cellsOf(sand.field);
         memory.add("copy for a checkpoint", {0, 0, 0, 0, 3 * bytesOfKept(cells)});
+        memory.add("heap after a checkpoint", {0, 0, 0, cells, 0});
     }
     return memory;
 }
@@ -138,8 +139,9 @@ ProcessMemory ProcessMemory::ofRank(const SandSize& sand, std::int64_t frameBuff
     const std::int64_t drawn = kNumber * cells + cells / 2 + (sand.ground ? cells : 0);
     memory.add("drawn heights", {0, drawn, drawn, drawn, drawn});
     // Rough sand that is seen is drawn at every cell, with 16 bytes for a vertex, but not more finely than the pixels
-    // show. Chunks of 32 x 32 quads share edges. A pixel takes eight bytes of a frame buffer or more.
-    const std::int64_t seen = std::min(cells, frames);
+    // show, which is up to two vertices for a pixel. Chunks of 32 x 32 quads share edges. A pixel takes 16 bytes of
+    // frame buffers or more.
+    const std::int64_t seen = std::min(cells, 2 * (frames / 16));
     const std::int64_t vertices = 17 * seen;
     memory.add("vertices", {0, 0, vertices, vertices, vertices});
     // Places of changes, and triangles that the driver holds.

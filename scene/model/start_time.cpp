@@ -7,7 +7,7 @@ namespace scene {
 
 StartTime StartTime::of(const SandSize& sand) {
     // [s] for a million cells, and for the programs. docs/figures.md has them ("The start of a large field").
-    constexpr double kRead = 0.06, kReplica = 0.03, kDrawing = 0.05, kPrograms = 1;
+    constexpr double kRead = 0.05, kReplica = 0.03, kDrawing = 0.015, kPrograms = 1;
     const double cells = 1e-6 * sand.field.columns * sand.field.rows;
     return {sand.rasterBytes > 0 ? kRead * cells : 0, kReplica * cells, kDrawing * cells, kPrograms};
 }
