@@ -70,8 +70,10 @@ class BegunCopy {
 public:
     BegunCopy() = default;
     BegunCopy(const BegunCopy&) {}
-    BegunCopy& operator=(const BegunCopy&) {
-        copy_.reset();
+    BegunCopy& operator=(const BegunCopy& other) {
+        if (this != &other) {
+            copy_.reset();
+        }
         return *this;
     }
     BegunCopy(BegunCopy&&) noexcept = default;

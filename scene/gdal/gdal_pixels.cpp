@@ -39,7 +39,7 @@ public:
             const double noData = GDALGetRasterNoDataValue(raster.band(), &declared);
             noData_ = declared == 0 ? std::nullopt : std::optional(noData);
         }
-        // A colour without data is no data of one band, and not of the brightness.
+        // The number that means no data belongs to one colour. A photo whose brightness counts has data everywhere.
         if (!noData_ && (flags & GMF_ALL_VALID) == 0 && !(coloured && (flags & GMF_NODATA) != 0)) {
             mask_ = GDALGetMaskBand(raster.band());
         }

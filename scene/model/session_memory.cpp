@@ -138,9 +138,8 @@ ProcessMemory ProcessMemory::ofRank(const SandSize& sand, std::int64_t frameBuff
     // Heights, their ranges in blocks of 8 x 8 cells, and the chunks.
     const std::int64_t drawn = kNumber * cells + cells / 2 + (sand.ground ? cells : 0);
     memory.add("drawn heights", {0, drawn, drawn, drawn, drawn});
-    // Rough sand that is seen is drawn at every cell, with 16 bytes for a vertex, but not more finely than the pixels
-    // show, which is up to two vertices for a pixel. Chunks of 32 x 32 quads share edges. A pixel takes 16 bytes of
-    // frame buffers or more.
+    // A vertex takes 16 bytes, and chunks of 32 x 32 quads share edges. Rough sand that is seen has a vertex for each
+    // cell, but at most two for a pixel. A pixel takes 16 bytes of frame buffers or more.
     const std::int64_t seen = std::min(cells, 2 * (frames / 16));
     const std::int64_t vertices = 17 * seen;
     memory.add("vertices", {0, 0, vertices, vertices, vertices});

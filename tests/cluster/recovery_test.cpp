@@ -140,9 +140,9 @@ TEST_F(Recovery, ARandomKillLosesNothing) {
 
 // The script tries every process, signal and moment of a large start. Here it tries a few of a small one.
 TEST_F(Recovery, AProcessThatIsKilledDuringTheStartLeavesNothing) {
-    const Ended ended = script("kill_starts.py", {"--side", "200", "--wall", wall(1, 2, "mono"), "--limit", "100",
-                                                  "--processes", "launcher", "master", "--signals", "KILL",
-                                                  "--moments", "rank"});
+    const Ended ended =
+        script("kill_starts.py", {"--side", "200", "--wall", wall(1, 2, "mono"), "--limit", "100", "--processes",
+                                  "launcher", "master", "--signals", "KILL", "--moments", "rank"});
     EXPECT_EQ(ended.status, 0) << ended.output;
     EXPECT_NE(ended.output.find("0 of 3 bad"), std::string::npos) << ended.output;
 }
