@@ -88,12 +88,16 @@ void ProcessMemory::addReplica(const SandSize& sand) {
     add("coarse phase of the tool", {0, 0, 0, 0, sand.toolBytes});
 }
 
+void ProcessMemory::addTerrain(const SandSize& sand) {
+    const std::int64_t plane = bytesOfPlane(sand.field), ground = sand.ground ? plane : 0;
+    add("raster", {sand.rasterBytes, 0, 0, 0, 0});
+    add("heights of the scene", {plane + ground, plane, 0, 0, 0});
+}
+
 ProcessMemory ProcessMemory::ofServer(const SandSize& sand) {
     ProcessMemory memory(sand, kServer, sand.rasterBytes > 0);
     const std::int64_t plane = bytesOfPlane(sand.field), packed = bytesOfPackedPlane(sand.field);
-    const std::int64_t ground = sand.ground ? plane : 0;
-    memory.add("raster", {sand.rasterBytes, 0, 0, 0, 0});
-    memory.add("heights of the scene", {plane + ground, plane, 0, 0, 0});
+    memory.addTerrain(sand);
     if (hasHeights(sand)) {
         // A hand whose rest follows the surface has a copy of the heights of the start.
         memory.add("datum of the hand", {0, plane, plane, plane, plane});
@@ -104,10 +108,8 @@ ProcessMemory ProcessMemory::ofServer(const SandSize& sand) {
 
 ProcessMemory ProcessMemory::ofMaster(const SandSize& sand, bool checkpoints) {
     ProcessMemory memory(sand, kMaster, sand.rasterBytes > 0);
-    const std::int64_t plane = bytesOfPlane(sand.field), packed = bytesOfPackedPlane(sand.field);
-    const std::int64_t ground = sand.ground ? plane : 0;
-    memory.add("raster", {sand.rasterBytes, 0, 0, 0, 0});
-    memory.add("heights of the scene", {plane + ground, plane, 0, 0, 0});
+    const std::int64_t packed = bytesOfPackedPlane(sand.field);
+    memory.addTerrain(sand);
     if (hasHeights(sand)) {
         // The message for the ranks, and the header of the journal, which grows while it is encoded.
         memory.add("message and journal's header", {0, 4 * packed, 0, 0, 0});

@@ -79,6 +79,8 @@ private:
         parts_.push_back({name, bytes});
     }
     void addReplica(const SandSize& sand);
+    /// Adds what a process that reads the scene's file holds until its replica exists.
+    void addTerrain(const SandSize& sand);
 
     std::vector<MemoryPart> parts_;
     std::int64_t shared_;
