@@ -203,7 +203,8 @@ void Erosion::resume(const Inertia& inertia) {
     std::fill(written_.begin(), written_.end(), Written::no);
     inertia.putInto(east_, north_);
     inertia.visitAreas([this](const CellRect& cells) {
-        const int first = std::max(cells.y0, 0) / blockSize_, last = std::max(cells.y1 - 1, 0) / blockSize_;
+        // A flux to the north of the last row also changes the row beyond it.
+        const int first = std::max(cells.y0, 0) / blockSize_, last = std::min(cells.y1 / blockSize_, down_ - 1);
         std::fill(written_.begin() + first, written_.begin() + last + 1, Written::lately);
     });
     undisturbed_ = inertia.undisturbed();

@@ -2,6 +2,8 @@
 // Sweeps leave out blocks that are certainly at rest. That must not change the sand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "sand/grid/erosion.hpp"
@@ -105,6 +107,30 @@ TEST_F(RestingBlocks, AreNotThoseWhoseSandStillSlides) {
         slidOn += sameHeights(field, before) ? 0 : 1;
     }
     EXPECT_GT(slidOn, 10);
+}
+
+// A flux to the north is kept with the cell that gives the sand. The block in the north must get it.
+TEST_F(RestingBlocks, GetTheSandOfAResumedFluxFromTheBlockInTheSouth) {
+    constexpr int kSide = 128, kGives = 63;
+    const sand::Rules rules = samples::rulesFor(HeightField(kSide, kSide, 1.0));
+    HeightField field(kSide, kSide, 1.0);
+    for (int y = 0; y < kSide;
+         ++y) {  // the slopes along both axes are below 0.7 of the threshold, and together near it
+        for (int x = 0; x < kSide; ++x) {
+            field.setHeight(x, y, (2 * kSide - x - y) * (rules.tuning.threshold / 3 * 2));
+        }
+    }
+    sand::CellArray east(kSide, kSide), north(kSide, kSide);
+    std::fill_n(north.row(kGives) + 40, 20, rules.tuning.threshold / 20);
+    sand::grid::Inertia inertia(sand::grid::Inertia::kMostCounted);
+    inertia.keep(east, north, {0, 0, 64, kGives + 1});
+    HeightField whole = field;
+    const HeightField before = field;
+    Erosion resumed(field, rules), other(whole, rules, visitsAll());
+    resumed.resume(inertia);
+    other.resume(inertia);
+    ASSERT_NO_FATAL_FAILURE(expectEqual(resumed, field, other, whole, 12));
+    EXPECT_FALSE(sameHeights(field, before)) << "the sand slides on";
 }
 
 TEST_F(RestingBlocks, AreNotVisited) {
