@@ -45,6 +45,10 @@ std::unique_ptr<Surface> GridSurface::clone() const {
 
 void GridSurface::willChange(const CellRect& cells) {
     beforeStroke_.willChange(field_, cells);
+    completeCopyOf(cells);
+}
+
+void GridSurface::completeCopyOf(const CellRect& cells) const {
     if (const std::shared_ptr<TileCopy> copy = begun_.get()) {
         copy->willChange(field_, erosion_, cells);
     }
@@ -170,7 +174,7 @@ std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
 }
 
 void GridSurface::putBackKept() {
-    willChange(field_.bounds());  // all fluxes
+    completeCopyOf(field_.bounds());  // all fluxes change, but only the heights of the stroke
     const std::vector<CellRect> changed = beforeStroke_.changed();
     beforeStroke_.putBackHeights(field_);
     for (const CellRect& tile : changed) {
@@ -251,10 +255,8 @@ std::vector<std::int32_t> GridSurface::valuesOf(int tile) const {
 }
 
 void GridSurface::corrupt(int column, int row, int bit) {
-    // Not the undo, because a fault of the memory changes it as well.
-    if (const std::shared_ptr<TileCopy> copy = begun_.get()) {
-        copy->willChange(field_, erosion_, {column, row, column + 1, row + 1});
-    }
+    completeCopyOf(
+        {column, row, column + 1, row + 1});  // not the undo, because a fault of the memory changes it as well
     field_.setHeight(column, row, field_.height(column, row) ^ (std::int32_t{1} << bit));
 }
 

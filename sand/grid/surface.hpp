@@ -76,6 +76,8 @@ public:
 private:
     /// Must be called before heights or fluxes of `cells` change. Undo and a begun copy take their sand.
     void willChange(const CellRect& cells);
+    /// Lets a begun copy take the sand of `cells`, if it lacks it.
+    void completeCopyOf(const CellRect& cells) const;
     /// Records a change of `cells` for hash and takeChange(). Call willChange() before it.
     void touch(const CellRect& cells);
     /// Records a change of the whole field.

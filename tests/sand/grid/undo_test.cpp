@@ -149,6 +149,31 @@ std::shared_ptr<sand::Ground> roughGround() {
 }
 
 // A tile must be kept before the first sweep, drag or edit that changes it, whatever moves its sand.
+TEST(GridUndo, ReportsAndKeepsOnlyTheTilesOfTheStroke) {
+    sand::Replica replica(samples::flatScene(512, 512));
+    const auto step = [&replica](bool engaged) {
+        sand::Step next{
+            1, replica.stepNumber() + 1, engaged, {{60 * sand::kProbePerCell, 60 * sand::kProbePerCell, 0}}};
+        next.sweeps = replica.wholeSweeps(next);
+        return next;
+    };
+    replica.apply(step(true));
+    replica.apply(step(false));
+    (void)replica.takeChange();
+    sand::Step undo = step(false);
+    undo.edit = sand::Edit::undo;
+    replica.apply(undo);
+    ASSERT_EQ(replica.leftOut(), "");
+    const sand::SurfaceChange change = replica.takeChange();
+    EXPECT_FALSE(change.whole);
+    std::int64_t cells = 0;
+    for (const sand::CellRect& part : std::get<sand::CellChange>(change.parts).cells) {
+        cells += std::int64_t{part.x1 - part.x0} * (part.y1 - part.y0);
+    }
+    EXPECT_GT(cells, 0);
+    EXPECT_LE(cells, 9 * 64 * 64) << "a tile has 64 x 64 cells";
+}
+
 TEST(GridUndo, RestoresTheSandOfARandomStroke) {
     const unsigned seed = test::randomSeed();
     SCOPED_TRACE(test::again(seed));
