@@ -102,7 +102,8 @@ std::string describeScene(const std::string& file, const Wall* wall) {
     }
     scene::SandSize sand = scene::SandSize::of(scene);
     sand.rasterBytes = sizes.rasterBytes();
-    return text + memoryTable(sand, wall) + scene::StartTime::of(sand).text() + "\n";
+    text += memoryTable(sand, wall);
+    return sand.hasHeights() ? text + scene::StartTime::of(sand).text() + "\n" : text;  // estimated for heights only
 }
 
 std::string cellsOfScene(const std::string& file) {

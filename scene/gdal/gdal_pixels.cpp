@@ -43,7 +43,8 @@ public:
         if (!noData_ && (flags & GMF_ALL_VALID) == 0 && !(coloured && (flags & GMF_NODATA) != 0)) {
             mask_ = GDALGetMaskBand(raster.band());
         }
-        GDALGetBlockSize(raster.band(), &blockColumns_, &blockRows_);
+        int blockColumns = 1;
+        GDALGetBlockSize(raster.band(), &blockColumns, &blockRows_);
         heights_.reserve(static_cast<std::size_t>(raster.columns()) * static_cast<std::size_t>(raster.rows()));
     }
 
@@ -163,7 +164,7 @@ private:
     bool isPng_;
     std::optional<double> noData_;    // number that means no data, if GDAL's mask does not know it
     GDALRasterBandH mask_ = nullptr;  // null if GDAL masks no pixel
-    int blockColumns_ = 1, blockRows_ = 1;
+    int blockRows_ = 1;
     std::vector<unsigned char> known_;  // mask of a stripe
     RasterHeights heights_;
 };

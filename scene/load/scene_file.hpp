@@ -21,9 +21,9 @@ struct SizeChecks {
     std::function<void(const RasterSize& size)> raster{};
     /// Receives the size of the field before its heights are made.
     ///
-    /// It is called once, as soon as the size is known. For a raster whose header marks no data, that is before its
-    /// pixels are read. For other rasters, it is after the edges without data have been cut off. It is not called for a
-    /// terrain of points, which has no field.
+    /// It is called once, as soon as the size is known. For a raster whose header marks no number as no data,
+    /// that is before its pixels are read. For other rasters, it is after the edges without data have been cut off. It
+    /// is not called for a terrain of points, which has no field.
     std::function<void(const FieldToMake& size)> field{};
     /// Receives the size of a raster from which edges may be cut off, before its pixels are read. It is not known yet
     /// whether the field gets walls. `field` follows.

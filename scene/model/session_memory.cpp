@@ -15,10 +15,7 @@ std::int64_t cellsOf(const sand::FieldSize& field) { return std::int64_t{field.c
 
 /// Returns the memory of numbers that are kept for an undo or a checkpoint, one for each cell. They are packed
 /// (sand/grid/packed_cells.hpp), but numbers of all sizes take 32 bits each, and a list.
-std::int64_t bytesOfKept(std::int64_t cells) { return cells * 33 / 8; }
-
-/// Returns whether the sand has a height per cell.
-bool hasHeights(const SandSize& sand) { return sand.field.bytesOfReplica().has_value(); }
+std::int64_t bytesOfKept(std::int64_t cells) { return cells * 17 / 4; }
 
 }  // namespace
 
@@ -58,6 +55,8 @@ SandSize SandSize::of(const sand::Start& start) {
     return size;
 }
 
+bool SandSize::hasHeights() const { return field.bytesOfReplica().has_value(); }
+
 ProcessMemory::ProcessMemory(const SandSize& sand, const Fixed& fixed, bool readsRaster)
     : shared_(fixed.shared + (readsRaster ? kImport : 0)) {
     const std::int64_t later = fixed.own + shared_, start = later + fixed.start;
@@ -66,7 +65,7 @@ ProcessMemory::ProcessMemory(const SandSize& sand, const Fixed& fixed, bool read
 }
 
 void ProcessMemory::addReplica(const SandSize& sand) {
-    if (!hasHeights(sand)) {
+    if (!sand.hasHeights()) {
         add("triangles", {0, sand.meshBytes, sand.meshBytes, sand.meshBytes, sand.meshBytes});
         return;
     }
@@ -98,7 +97,7 @@ ProcessMemory ProcessMemory::ofServer(const SandSize& sand) {
     ProcessMemory memory(sand, kServer, sand.rasterBytes > 0);
     const std::int64_t plane = bytesOfPlane(sand.field), packed = bytesOfPackedPlane(sand.field);
     memory.addTerrain(sand);
-    if (hasHeights(sand)) {
+    if (sand.hasHeights()) {
         // A hand whose rest follows the surface has a copy of the heights of the start.
         memory.add("datum of the hand", {0, plane, plane, plane, plane});
         memory.add("compressing the start", {0, packed, 0, 0, 0});
@@ -110,11 +109,11 @@ ProcessMemory ProcessMemory::ofMaster(const SandSize& sand, bool checkpoints) {
     ProcessMemory memory(sand, kMaster, sand.rasterBytes > 0);
     const std::int64_t packed = bytesOfPackedPlane(sand.field);
     memory.addTerrain(sand);
-    if (hasHeights(sand)) {
+    if (sand.hasHeights()) {
         // The message for the ranks, and the header of the journal, which grows while it is encoded.
         memory.add("message and journal's header", {0, 4 * packed, 0, 0, 0});
     }
-    if (hasHeights(sand) && checkpoints) {
+    if (sand.hasHeights() && checkpoints) {
         // The copy shares what the undo keeps. A thread compresses it into the file, a stripe at a time.
         const std::int64_t cells = cellsOf(sand.field);
         memory.add("copy for a checkpoint", {0, 0, 0, 0, 3 * bytesOfKept(cells)});
@@ -129,7 +128,7 @@ ProcessMemory ProcessMemory::ofRank(const SandSize& sand, std::int64_t frameBuff
     const std::int64_t cells = cellsOf(sand.field);
     const std::int64_t frames = frameBufferBytes;
     memory.add("frame buffers", {0, frames, frames, frames, frames});
-    if (!hasHeights(sand)) {
+    if (!sand.hasHeights()) {
         // A height for each nominal cell, from which follows how much sky each place sees.
         const std::int64_t heights = kNumber * cells;
         memory.add("drawn heights", {0, heights, heights, heights, heights});
@@ -141,13 +140,13 @@ ProcessMemory ProcessMemory::ofRank(const SandSize& sand, std::int64_t frameBuff
     const std::int64_t drawn = kNumber * cells + cells / 2 + (sand.ground ? cells : 0);
     memory.add("drawn heights", {0, drawn, drawn, drawn, drawn});
     // A vertex takes 16 bytes, and chunks of 32 x 32 quads share edges. Rough sand that is seen has a vertex for each
-    // cell, but at most two for a pixel. A pixel takes 16 bytes of frame buffers or more.
-    const std::int64_t seen = std::min(cells, 2 * (frames / 16));
-    const std::int64_t vertices = 17 * seen;
-    memory.add("vertices", {0, 0, vertices, vertices, vertices});
+    // cell, but at most four for a pixel with the usual `detail` of half a pixel (LevelRule::finest). Sand that moves
+    // has at most one for four pixels. A pixel takes 12 bytes of frame buffers or more.
+    const std::int64_t pixels = frames / 12, seen = std::min(cells, 4 * pixels), moving = std::min(cells, pixels);
+    memory.add("vertices", {0, 0, 17 * seen, 17 * seen, 17 * moving});
     // Places of changes, and triangles that the driver holds.
-    const std::int64_t places = cells / 2, triangles = 8 * seen;
-    memory.add("work of drawing", {0, 0, places + triangles, places + 2 * seen, places + triangles});
+    const std::int64_t places = cells / 2;
+    memory.add("work of drawing", {0, 0, places + 8 * seen, places + 2 * seen, places + 8 * moving});
     return memory;
 }
 

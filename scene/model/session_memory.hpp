@@ -55,6 +55,8 @@ struct SandSize {
 
     /// Returns the size of the sand that `start` has.
     [[nodiscard]] static SandSize of(const sand::Start& start);
+    /// Returns whether the sand has a height for each cell, and not triangles.
+    [[nodiscard]] bool hasHeights() const;
 };
 
 /// Memory of one process.

@@ -92,7 +92,7 @@ def main():
     parser = Parser(prog="memory_figures.py", description=__doc__.splitlines()[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--sides", nargs="+", type=at_least(int, 64), default=[2048, 4096], help="sides of the fields [cell]")
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="heights of the fields")
-    parser.add_argument("--seconds", type=at_least(int, 1), default=60, help="time of a session after the first frame [s]")
+    parser.add_argument("--seconds", type=at_least(int, 1), default=60, help="time of a session after the hand is linked [s]")
     parser.add_argument("--wall", default="desktop", help="wall: a sample's name or a file")
     args = parser.parse_args()
     rows = []
