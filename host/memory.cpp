@@ -22,17 +22,23 @@ std::optional<std::int64_t> numberIn(const char* file) {
     return stream >> number ? std::optional(number) : std::nullopt;
 }
 
-std::int64_t available() {
-    std::ifstream stream("/proc/meminfo");
+/// Returns the number behind a key of a file of the kernel that has a key in each line, or nullopt without the key.
+std::optional<std::int64_t> numberOf(const std::string& wanted, const char* file) {
+    std::ifstream stream(file);
     std::string key;
     while (stream >> key) {
-        std::int64_t kilobytes = 0;
-        if (key == "MemAvailable:" && stream >> kilobytes) {
-            return kilobytes * 1024;
+        std::int64_t number = 0;
+        if (key == wanted && stream >> number) {
+            return number;
         }
         stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
     }
-    return kUnlimited;
+    return std::nullopt;
+}
+
+std::int64_t available() {
+    const auto kilobytes = numberOf("MemAvailable:", "/proc/meminfo");
+    return kilobytes ? *kilobytes * 1024 : kUnlimited;
 }
 
 }  // namespace
@@ -41,7 +47,9 @@ std::int64_t freeMemory() {
     // /proc/meminfo does not show the limit of a container.
     const auto most = numberIn("/sys/fs/cgroup/memory.max");
     const auto used = numberIn("/sys/fs/cgroup/memory.current");
-    return std::min(available(), most && used ? std::max<std::int64_t>(*most - *used, 0) : kUnlimited);
+    // The system gives the memory of files that nobody uses back.
+    const std::int64_t files = numberOf("inactive_file", "/sys/fs/cgroup/memory.stat").value_or(0);
+    return std::min(available(), most && used ? std::max<std::int64_t>(*most - *used + files, 0) : kUnlimited);
 }
 
 std::int64_t freeMemoryOfProcess() {

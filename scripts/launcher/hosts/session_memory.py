@@ -11,6 +11,7 @@ from job.rank_hosts import HERE
 
 MEMINFO, GROUP = pathlib.Path("/proc/meminfo"), pathlib.Path("/sys/fs/cgroup")
 AVAILABLE = re.compile(r"^MemAvailable:\s*(\d{1,15}) kB", re.MULTILINE)
+CACHED = re.compile(r"^inactive_file (\d{1,18})$", re.MULTILINE)
 # A line of `sandwall-check --memory`: the process, its bytes at rest, at the start and with all sand moving, and shared ones.
 LINE = re.compile(r"(server|master|[1-9]\d{0,5}) (\d{1,18}) (\d{1,18}) (\d{1,18}) (\d{1,18})")
 PROCESS = {"server": "haptic server", "master": "master", "rank": "rank"}
@@ -42,10 +43,20 @@ def free_here():
             found.append(1024 * int(match[1]))
         most = (GROUP / "memory.max").read_text(encoding="ascii").strip()
         if most.isdecimal():
-            found.append(max(int(most) - int((GROUP / "memory.current").read_text(encoding="ascii")), 0))
+            used = int((GROUP / "memory.current").read_text(encoding="ascii"))
+            found.append(max(int(most) - used + memory_of_files(), 0))
     except (OSError, ValueError):
         pass  # no such limit
     return min(found, default=None)
+
+
+def memory_of_files():
+    """Returns the memory of files in this control group that nobody uses [byte]. The system gives it back."""
+    try:
+        files = CACHED.search((GROUP / "memory.stat").read_text(encoding="ascii"))
+    except (OSError, ValueError):
+        return 0
+    return int(files[1]) if files else 0
 
 
 def in_words(number):
