@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <optional>
@@ -153,11 +154,13 @@ int main(int argc, char** argv) {
     LastCheckpoint last;
     const int status = runJob(line, argc, argv, options, last);
     // The ranks have ended, so that no limit of theirs ends a checkpoint that takes long.
-    if (last && !master::finishUnlessSignalled(last->checkpoint, last->dispensable)) {
-        std::_Exit(status);  // the destructor would wait for the thread
-    }
+    const bool finished = !last || master::finishUnlessSignalled(last->checkpoint, last->dispensable);
     if (status == 0) {
         host::removeRankLog();
+    }
+    if (!finished) {
+        std::fflush(nullptr);
+        std::_Exit(status);  // the destructor would wait for the thread
     }
     return status;
 }

@@ -68,8 +68,9 @@ std::optional<Message> MessageReader::next() {
     }
     if (stream.size() < kLengthBytes + length) {
         if (length > kMaxKept && stream.size() > kLengthBytes) {
-            // At once, because a buffer that grows is copied, and holds up to twice as much.
-            buffer_.reserve(begin_ + kLengthBytes + length);
+            // At once, because a buffer that grows is copied, and holds up to twice as much. The last bytes that are
+            // read with this message may belong to the next one.
+            buffer_.reserve(begin_ + kLengthBytes + length + kMaxKept);
         }
         return std::nullopt;
     }

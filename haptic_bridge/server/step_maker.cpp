@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/server/step_maker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <new>
 #include <utility>
@@ -104,6 +106,11 @@ void StepMaker::edit(EditRequest request) {
     }
     if (const auto& sand = request.edit.sand; sand) {
         // Refuses the sand here, because a step that holds it can no longer be refused.
+        if (static_cast<std::int64_t>(sand->size()) > replica_.rules().stepLimits().mostSandBytes) {
+            output_.unusable(session_, fmt::format("a load of {} bytes of sand; this scene's steps load at most {}",
+                                                   sand->size(), replica_.rules().stepLimits().mostSandBytes));
+            return;
+        }
         if (const std::string why = whyNot([&] { (void)replica_.sandReader()(*sand); }); !why.empty()) {
             output_.unusable(session_, "the sand of a load does not fit this scene: " + why);
             return;

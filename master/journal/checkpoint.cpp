@@ -52,8 +52,9 @@ private:
 };
 
 /// Writes the bytes of Checkpoint::encode(), with the state that `putState` writes.
+/// Calls `between` again and again.
 void putInto(host::WholeFile& file, const Checkpoint& checkpoint,
-             const std::function<void(base::ByteWriter&)>& putState) {
+             const std::function<void(base::ByteWriter&)>& putState, const std::function<void()>& between) {
     FileSink sink(file);
     base::ByteWriter writer(sink);
     journal::writeOrigin(kCheckpointKind, host::release(), writer);
@@ -73,13 +74,16 @@ void putInto(host::WholeFile& file, const Checkpoint& checkpoint,
     writer.flush();
     // Lengths come before what they are the lengths of, so the checksum can be computed only now.
     journal::FileSum sum;
-    file.readBack([&sum](std::span<const std::uint8_t> piece) { sum.add(piece); });
+    file.readBack([&](std::span<const std::uint8_t> piece) {
+        sum.add(piece);
+        between();
+    });
     writer.put(sum.value());
     writer.flush();
 }
 
 void write(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept,
-           const std::function<void(base::ByteWriter&)>& putState) {
+           const std::function<void(base::ByteWriter&)>& putState, const std::function<void()>& between) {
     try {
         host::makeFolders(folderOf(journal));
     } catch (const fs::filesystem_error& error) {
@@ -87,7 +91,7 @@ void write(const fs::path& journal, const Checkpoint& checkpoint, std::size_t ke
             fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.code().message()));
     }
     host::WholeFile file(checkpointFile(journal, checkpoint.step), host::WholeFile::Other::refused);
-    putInto(file, checkpoint, putState);
+    putInto(file, checkpoint, putState, between);
     file.keepSynced();
     const std::vector<std::uint64_t> steps = checkpointsOf(journal);
     for (std::size_t i = kept; i < steps.size(); ++i) {
@@ -134,12 +138,16 @@ void forgetHalves(const fs::path& journal) {
 }
 
 void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept) {
-    write(journal, checkpoint, kept, [&checkpoint](base::ByteWriter& writer) { writer.putBytes(checkpoint.state); });
+    write(
+        journal, checkpoint, kept, [&checkpoint](base::ByteWriter& writer) { writer.putBytes(checkpoint.state); },
+        [] {});
 }
 
 void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, const sand::StateCopy& copy,
                      std::size_t kept, const std::function<void()>& between) {
-    write(journal, checkpoint, kept, [&copy, &between](base::ByteWriter& writer) { copy.encodeInto(writer, between); });
+    write(
+        journal, checkpoint, kept, [&copy, &between](base::ByteWriter& writer) { copy.encodeInto(writer, between); },
+        between);
 }
 
 Checkpoint readCheckpoint(const fs::path& file) {

@@ -29,9 +29,10 @@ void UnfinishedCheckpoint::Work::requireWanted() const {
 }
 
 UnfinishedCheckpoint::UnfinishedCheckpoint(std::uint64_t step, std::function<void(Work&)> write)
-    : step_(step), result_(std::async(std::launch::async, [work = work_, write = std::move(write)] {
+    : step_(step), result_(std::async(std::launch::async, [work = work_, write = std::move(write)]() mutable {
           try {
-              write(*work);
+              // The copy of the sand ends on this thread. Otherwise a frame would wait until its memory is given back.
+              std::exchange(write, nullptr)(*work);
               return std::string();
           } catch (const std::exception& error) {
               return std::string(error.what());

@@ -98,6 +98,15 @@ TEST_F(StepMakerTest, BeginsAtOnceOnTheSameSand) {
     EXPECT_EQ(hand_.felt, std::vector<std::uint64_t>{1});
 }
 
+TEST_F(StepMakerTest, RefusesALoadThatNoStepOfThisSceneMayHold) {
+    maker_.start(1, grantOf(sand::Replica(scene_)));
+    const auto most = static_cast<std::size_t>(scene_.rules.stepLimits().mostSandBytes);
+    maker_.edit({sand::Edit::loaded(base::Bytes(most + 1))});
+    ASSERT_EQ(unusable_.size(), 1U);
+    EXPECT_EQ(unusable_[0],
+              fmt::format("a load of {} bytes of sand; this scene's steps load at most {}", most + 1, most));
+}
+
 TEST_F(StepMakerTest, AsksForTheSandThatItLacksAndJudgesIt) {
     sand::Replica master(scene_);
     master.apply(engagedStep(1));
