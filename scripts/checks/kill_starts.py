@@ -72,9 +72,10 @@ class Start:
         for pid in self.running():
             try:
                 program = pathlib.Path(os.readlink(f"/proc/{pid}/exe")).name
+                asks = b"--version" in pathlib.Path("/proc", str(pid), "cmdline").read_bytes()
             except OSError:
                 continue
-            if program in wanted and b"--version" not in pathlib.Path("/proc", str(pid), "cmdline").read_bytes():
+            if program in wanted and not asks:
                 found.append(pid)
         return max(found, default=None)
 
@@ -145,7 +146,10 @@ def one(args, folder, scene, whole, case):
             return None
         before = start.said()
         start.note_jobs()
-        os.kill(victim, getattr(signal, f"SIG{number}"))
+        try:
+            os.kill(victim, getattr(signal, f"SIG{number}"))
+        except ProcessLookupError:
+            return None
         signalled = time.monotonic()
         if not ends:
             start.wait(lambda: start.frame() or start.launcher.poll() is not None, "neither a frame nor an end")

@@ -115,7 +115,8 @@ class OpenMpi4:
     def tidy(self, pid):
         """Removes what the mpirun with this process id has left behind: its folder, if it was killed, or ended by a signal at its start."""
         host = glob.escape(socket.gethostname().partition(".")[0])
-        remove_folders(os.path.join(f"ompi.{host}*.{os.geteuid()}", f"pid.{int(pid)}"))
+        for name in (host, f"{host}.*"):  # with or without a domain
+            remove_folders(os.path.join(f"ompi.{name}.{os.geteuid()}", f"pid.{int(pid)}"))
 
 
 class OpenMpi5:
@@ -207,7 +208,10 @@ def remove_folders(pattern):
 
 
 def is_own_folder(path):
-    about = os.lstat(path)
+    try:
+        about = os.lstat(path)
+    except OSError:
+        return False  # another job has removed it
     return stat.S_ISDIR(about.st_mode) and about.st_uid == os.geteuid()
 
 

@@ -82,19 +82,31 @@ def read(folder):
     return scene if mark.get("version") == VERSION and all(isinstance(word, str) for word in scene) else None
 
 
-def claim(folder):
+def claim(folder, needs_lock=False):
     """Locks the mark of a folder for this process, and returns its descriptor. Returns None while another `try` digs there.
 
-    The kernel releases the lock when the process ends for any reason. Throws OSError.
+    A file system without locks gives the descriptor all the same, unless `needs_lock`. The kernel releases the lock when the
+    process ends for any reason. Throws OSError.
     """
-    file = session_folder.open_regular(pathlib.Path(folder) / NAME, os.O_RDONLY)
+    file = session_folder.open_regular(pathlib.Path(folder) / NAME, os.O_RDWR)  # NFS locks no file that is only read
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        if not session_folder.is_held(folder):  # by `run --resume`
-            return file
-    except BlockingIOError:
-        pass
+        locked = lock(file)
+        free = not session_folder.is_held(folder) if locked else locked is None and not needs_lock  # `run --resume` may hold it
     except OSError:
-        return file  # a file system without locks
+        os.close(file)
+        raise
+    if free:
+        return file
     os.close(file)
     return None
+
+
+def lock(file):
+    """Locks a file. Returns False if another process has locked it, and None on a file system without locks."""
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return None
+    return True

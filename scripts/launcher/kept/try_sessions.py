@@ -18,6 +18,7 @@ from kept import marks
 
 MOST_SESSIONS = 10
 MOST_BYTES = 2 * 1000 ** 3  # of all sessions together
+SAND = ("checkpoints", "saves")  # beside the parts of the journal
 REASONS = {"count": f"only the {MOST_SESSIONS} newest sessions stay", "bytes": f"the sessions may have {MOST_BYTES // 1000 ** 3} GB together"}
 
 
@@ -27,6 +28,7 @@ class Kept:
     def __init__(self, path, scene):
         self.path, self.scene = pathlib.Path(path), scene
         times = [entry.lstat().st_mtime_ns for entry in self.path.iterdir() if entry.name.startswith(session_folder.JOURNAL)]
+        self.has_sand = bool(times) or any((self.path / name).exists() for name in SAND)
         self.has_journal = (self.path / session_folder.JOURNAL).is_file()
         self.time = max(times, default=(self.path / marks.NAME).lstat().st_mtime_ns)  # of the last step [ns]
 
@@ -103,9 +105,9 @@ def claimed_of(root, scene):
     return None, None
 
 
-def claim_of(path):
+def claim_of(path, needs_lock=False):
     try:
-        return marks.claim(path)
+        return marks.claim(path, needs_lock)
     except OSError:
         return None  # it has been removed meanwhile
 
@@ -147,23 +149,26 @@ def make_room(root, begun):
     """Removes the oldest sessions below `root` until at most MOST_SESSIONS of MOST_BYTES are left. Prints a line for each.
 
     The session `begun` and one that runs stay. One that no session can continue stays too, and does not count: it may be of
-    another release or of another user, or damaged.
+    another release or of another user, or damaged. Nor does one without sand, whose start has failed.
     """
     count = total = 0
     for kept in all_below(root, report=lambda line: None):
+        is_begun = kept.path.name == pathlib.Path(begun).name
+        if not kept.has_sand and not is_begun:
+            continue
         size = kept.bytes()
         reason = "count" if count >= MOST_SESSIONS else "bytes" if count > 0 and total + size > MOST_BYTES else None
         why = kept.why_unreadable() if kept.has_journal else session_folder.why_unsafe(kept.path)
         if why:
             if reason:
                 print_line(f"{kept.path}: {why}; it stays, although {REASONS[reason]}")
-        elif kept.path.name == pathlib.Path(begun).name or not reason or not remove(kept, reason):
+        elif is_begun or not reason or not remove(kept, reason):
             count, total = count + 1, total + size
 
 
 def remove(kept, reason):
     """Removes a session that has to go, and prints a line. Returns whether it has gone. It stays while another session digs there."""
-    if (claim := claim_of(kept.path)) is None:
+    if (claim := claim_of(kept.path, needs_lock=True)) is None:
         return False
     try:
         for entry in kept.path.iterdir():

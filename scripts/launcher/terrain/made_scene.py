@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes a scene of a raster, a picture or points, so that `try FILE` and `run --scene FILE` take them (docs/terrain.md)."""
 
+import contextlib
 import os
 import pathlib
 import re
 import subprocess
-import tempfile
 from typing import NamedTuple
 
 from base import checked_json, layout, session_folder
 from base.bad_input import BadInput
 from base.console import print_line
+from base.temporary_folder import TemporaryFolder
 from terrain import kinds
 
 NAME = "made_scene.toml"  # in the session's folder
@@ -38,6 +39,10 @@ class MadeScene(NamedTuple):
         for line in self.text.splitlines()[1:]:
             if line:
                 print_line(f"    {line}")
+
+    def draft(self):
+        """Returns a scope with the path of a temporary copy of the scene."""
+        return draft(self.text)
 
     def write(self, out):
         """Writes the scene into the session's folder. Throws BadInput if it cannot be written, or if another file has its name."""
@@ -90,16 +95,23 @@ def radius_of(columns, rows, cell):
     return cell * min(max(TOOL_SHARE * min(columns, rows), LEAST_CELLS), MOST_CELLS)
 
 
+@contextlib.contextmanager
+def draft(text):
+    """Scope with the path of a temporary file that has the text of a scene."""
+    with TemporaryFolder() as folder:
+        path = pathlib.Path(folder) / NAME
+        path.write_text(text, encoding="utf-8")
+        yield path
+
+
 def asked(path, text):
     """Returns (columns, rows, cell) of a scene, as sandwall-check prints them. Throws BadInput with its line, about `path`."""
-    with tempfile.TemporaryDirectory(prefix="sandwall-") as folder:
-        draft = pathlib.Path(folder) / NAME
-        draft.write_text(text, encoding="utf-8")
-        checked = subprocess.run([layout.program("sandwall-check"), "--scene", str(draft), "--cells"], stdin=subprocess.DEVNULL,
+    with draft(text) as file:
+        checked = subprocess.run([layout.program("sandwall-check"), "--scene", str(file), "--cells"], stdin=subprocess.DEVNULL,
                                  capture_output=True, text=True, errors="replace")
     if checked.returncode != 0:
         why = checked.stderr.strip().removeprefix("sandwall-check: ") or f"{path}: sandwall-check failed"
-        raise BadInput(re.sub(re.escape(str(draft)) + "(:[0-9]+)?", lambda _: path, why).replace(f"{path}: {path}", path))
+        raise BadInput(re.sub(re.escape(str(file)) + "(:[0-9]+)?", lambda _: path, why).replace(f"{path}: {path}", path))
     columns, rows, cell = checked.stdout.split()
     return int(columns), int(rows), float(cell)
 

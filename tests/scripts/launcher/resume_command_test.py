@@ -37,6 +37,16 @@ class Words(unittest.TestCase):
         self.assertEqual(self.words(here=True, desk="800x600+0+0"), ["--desk", "800x600+0+0", "--here"])
 
 
+    def test_they_have_the_options_of_the_programs_that_are_given(self):
+        self.assertEqual(self.words(device="script:gis", tls=True, force_scale=0.5, map=["scale=2", "turn=90"], journal="required", checkpoint=0.0),
+                         ["--scene", "dunes", "--device", "script:gis", "--tls", "--checkpoint", "0", "--map", "scale=2", "--map", "turn=90",
+                          "--force-scale", "0.5"])
+
+    def test_they_leave_out_what_ends_or_disturbs_the_session_and_the_values_of_variables(self):
+        self.assertEqual(self.words(frames=9, warm_up=3, inject=["hang:1"], record="ticks.csv", env=["TOKEN=secret", "XAUTHORITY"]),
+                         ["--env", "TOKEN", "--env", "XAUTHORITY"])
+
+
 class LastLine(LauncherTest):
     def setUp(self):
         super().setUp()

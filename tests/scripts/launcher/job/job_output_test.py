@@ -186,7 +186,7 @@ class Guard(unittest.TestCase):
     def test_a_guard_ends_in_order_what_has_shown_a_frame_and_all_else_at_once(self):
         for in_order, status in ((True, 7), (False, -15)):
             with self.subTest(in_order=in_order):
-                process, mark = self.begin("echo begun; sleep 2; exit 7")
+                process, mark = self.begin("echo begun; sleep 2; exit 7" if in_order else "echo begun; exec sleep 1000")
                 guard = processes.Guard(process.pid, mark.decode().partition("=")[2], [])
                 if in_order:
                     guard.end_in_order()

@@ -282,17 +282,19 @@ class Launcher(LauncherTest):
     def test_what_an_mpirun_of_version_4_leaves_behind_is_removed(self):
         host = socket.gethostname().partition(".")[0]
         with tempfile.TemporaryDirectory() as folder, mock.patch("tempfile.gettempdir", return_value=folder):
-            both, one, other = (pathlib.Path(folder, name) for name in (f"ompi.{host}.{os.geteuid()}", f"ompi.{host}x.{os.geteuid()}", "ompi.else.0"))
-            for path in (both / "pid.12", both / "pid.123", one / "pid.12", other / "pid.12"):
+            both, one, other = (pathlib.Path(folder, name) for name in (f"ompi.{host}.{os.geteuid()}", f"ompi.{host}.site.{os.geteuid()}", "ompi.else.0"))
+            longer = pathlib.Path(folder, f"ompi.{host}0.{os.geteuid()}")  # as node10 beside node1, in a folder that hosts share
+            for path in (both / "pid.12", both / "pid.123", one / "pid.12", other / "pid.12", longer / "pid.12"):
                 (path / "more").mkdir(parents=True)
             elsewhere = pathlib.Path(folder, "elsewhere")
             (elsewhere / "pid.12").mkdir(parents=True)
-            link = pathlib.Path(folder, f"ompi.{host}y.{os.geteuid()}")
+            link = pathlib.Path(folder, f"ompi.{host}.y.{os.geteuid()}")
             link.symlink_to(elsewhere)
             open_mpi.tidy_after(12)
             self.assertEqual(sorted(os.listdir(both)), ["pid.123"])
             self.assertFalse(one.exists(), "an empty folder goes, too")
             self.assertTrue((other / "pid.12").exists(), "another machine's")
+            self.assertTrue((longer / "pid.12").exists(), "another machine's, whose name begins alike")
             self.assertTrue((elsewhere / "pid.12").exists(), "no link is followed")
 
     def test_the_memory_of_a_job_is_removed_and_no_other_file(self):

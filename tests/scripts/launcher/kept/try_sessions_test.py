@@ -191,6 +191,23 @@ class Room(SessionsTest):
             self.assertEqual(self.choose(DUNES).out, folders[2], "the newest stays, however large it is")
         self.assertEqual(self.names(), {os.path.basename(folders[2])})
 
+    def test_starts_that_have_failed_push_no_sand_out(self):
+        sand = self.many(2)
+        for _ in range(12):
+            failed = pathlib.Path(self.many(1)[0])
+            (failed / "session.journal").unlink()
+            (failed / "log").mkdir()
+        self.choose(new=True)
+        self.assertEqual(self.lines, [])
+        self.assertTrue(all(os.path.exists(path) for path in sand))
+
+    def test_without_locks_nothing_is_removed_and_the_newest_sand_is_continued(self):
+        folders = self.many(11)
+        with mock.patch.object(marks.fcntl, "flock", side_effect=OSError(errno.ENOLCK, "No locks available")):
+            self.assertEqual(self.choose(DUNES).out, folders[-1])
+        self.assertEqual(self.lines, [])
+        self.assertTrue(all(os.path.exists(path) for path in folders))
+
     def test_the_session_that_is_continued_and_one_that_runs_never_go(self):
         old = self.choose().out
         running = self.choose(marks.Scene("ripples", "1"), running=True)

@@ -5,6 +5,8 @@
 import contextlib
 import os
 import pathlib
+import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -193,8 +195,12 @@ class Run(LauncherTest):
     def test_check_names_the_command_for_terrain(self):
         ended = subprocess.run([str(ROOT / "scripts" / "sandwall"), "check", "--scene", "valley.asc"], cwd=self.folder, env=self.environment,
                                capture_output=True, text=True, timeout=60)
-        self.assertEqual((ended.returncode, ended.stderr), (2, "sandwall: check: valley.asc is terrain, and check reads scenes; run --scene valley.asc "
-                                                              "--print-command prints the scene made of it\n"))
+        self.assertEqual(ended.returncode, 2)
+        found = re.fullmatch("sandwall: check: valley.asc is terrain, and check reads scenes; `(.*)` prints the scene made of it\n", ended.stderr)
+        self.assertIsNotNone(found, ended.stderr)
+        named = subprocess.run(shlex.split(found[1]), cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=60)
+        self.assertEqual((named.returncode, named.stderr), (0, ""))
+        self.assertIn("made_scene.toml", named.stdout)
 
     def test_a_photo_is_one_line(self):
         picture_files.write_png(picture(), self.folder / "valley.asc")
