@@ -25,6 +25,8 @@ struct Keystroke {
     [[nodiscard]] constexpr Keystroke once() const { return {code, modifiers, 0}; }
     friend constexpr bool operator==(const Keystroke&, const Keystroke&) = default;
 };
+/// Key that stands for the close button of a window, too.
+inline constexpr Keystroke kCloseKey{'q', Keystroke::kControl, 0};
 static_assert(std::is_trivially_copyable_v<Keystroke> && sizeof(Keystroke) == 4, "part of a message without gaps");
 
 }  // namespace base

@@ -42,9 +42,10 @@ constexpr std::array kWireframe{plain('g')}, kHillShade{plain('m')}, kForce{plai
 constexpr std::array kPattern{plain('t')};
 constexpr std::array kFullScreen{named(Keystroke::kF11)};
 constexpr std::array kHelp{named(Keystroke::kF1), plain('?'), plain('h')};
-constexpr std::array kQuit{named(Keystroke::kEscape), plain('q'), control('q')};
+constexpr std::array kLeave{named(Keystroke::kEscape)};
+constexpr std::array kQuit{base::kCloseKey};
 
-constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
+constexpr std::array<KeyEntry, 23> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
                                           {KeyAction::larger, kLarger, "larger tool", true},
                                           {KeyAction::smaller, kSmaller, "smaller tool", true},
                                           {KeyAction::turnLeft, kTurnLeft, "turns tool left", true},
@@ -65,6 +66,7 @@ constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the
                                           {KeyAction::pattern, kPattern, "next test pattern", false, true},
                                           {KeyAction::help, kHelp, "this help"},
                                           {KeyAction::fullScreen, kFullScreen, "full screen, and back", false, true},
+                                          {KeyAction::leave, kLeave, "leaves; twice: ends", false, true},
                                           {KeyAction::quit, kQuit, "ends the session", false, true}}};
 
 constexpr std::array<MouseEntry, 6> kMouse{{{"left button", "digs"},
@@ -93,7 +95,7 @@ std::optional<KeyFound> findKey(base::Keystroke key) {
     return std::nullopt;
 }
 
-bool isQuitKey(base::Keystroke key) { return std::ranges::find(kQuit, key.once()) != kQuit.end(); }
+bool isQuitKey(base::Keystroke key) { return key.once() == kLeave.front() || key.once() == kQuit.front(); }
 
 std::string hint() {
     return fmt::format("Dig with the left button · {} shows all keys · {} ends", keyName(kHelp.front()),

@@ -35,6 +35,7 @@ enum class KeyAction : std::uint8_t {
     pattern,
     help,
     fullScreen,  // done by the rank, whose window it is
+    leave,       // closes the help, or asks and then ends. A rank lifts the tool, or leaves full screen, by itself
     quit
 };
 
@@ -59,6 +60,7 @@ struct KeyFound {
 /// Returns the entry of a key, or nullopt if the key does nothing. A key that repeats does nothing unless
 /// KeyEntry::repeats.
 [[nodiscard]] std::optional<KeyFound> findKey(base::Keystroke key);
+/// Returns whether a key may end the session.
 [[nodiscard]] bool isQuitKey(base::Keystroke key);
 
 /// Returns the name of a key as it is on keyboards, such as "Ctrl+Z" or "F1".

@@ -78,6 +78,8 @@ std::vector<std::string> commandsOf(const lockstep::KeyFound& key, const KeyStat
             return {switched(Overlay::help, state)};
         case KeyAction::pattern:
             return {"pattern next"};
+        case KeyAction::leave:
+            return {"hide help"};
         case KeyAction::quit:
             return {"stop"};
     }
@@ -144,6 +146,7 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
         case KeyAction::capture:  // answered when the files are written
         case KeyAction::help:
         case KeyAction::fullScreen:
+        case KeyAction::leave:
         case KeyAction::quit:
             return {};
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace master {
 
 inline constexpr const char* kFixedView = "this wall's view is fixed";            // answer to an attempt to move it
 inline constexpr const char* kFixedSize = "this wall's windows keep their size";  // answer to F11 in one of them
+inline constexpr const char* kEndsByAnother = "Esc again within 3 s ends the session";
+inline constexpr std::int64_t kLeaveNs = 3'000'000'000;  // [ns], within which a second Escape ends the session
+inline constexpr const char* kNoSuchKey = "this key does nothing; F1 shows all keys";
 
 /// State of a session from which keys start.
 struct KeyState {

@@ -75,7 +75,7 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
     finishJobs(false);
     for (std::size_t rank = 0; rank < arrivals.size(); ++rank) {
         if (arrivals[rank].key.code != 0) {
-            windows_.obey(arrivals[rank].key, static_cast<int>(rank));
+            windows_.obey(arrivals[rank].key, static_cast<int>(rank), host::monotonicNs());
         }
     }
 }

@@ -25,13 +25,37 @@ void WindowDesk::frameView() {
     }
 }
 
-void WindowDesk::obey(base::Keystroke key, int rank) {
+void WindowDesk::obey(base::Keystroke key, int rank, std::int64_t nowNs) {
+    using base::Keystroke;
     const std::optional<lockstep::KeyFound> found = lockstep::findKey(key);
+    if (!found && pointer_ && !lockstep::findKey(key.once()) && key.repeated == 0 &&
+        (key.modifiers & (Keystroke::kSuper | Keystroke::kAlt)) == 0) {  // those belong to the desktop
+        answer(rank, kNoSuchKey);
+    }
     if (!found || !(pointer_ || found->entry.everySession)) {
         return;
     }
+    if (found->entry.action == lockstep::KeyAction::leave) {
+        leave(*found, rank, nowNs);
+    } else {
+        obey(*found, rank);
+    }
+}
+
+void WindowDesk::leave(const lockstep::KeyFound& found, int rank, std::int64_t nowNs) {
+    if (desk_.views.layers().shows(lockstep::Overlay::help)) {
+        obey(found, rank);
+    } else if (askedNs_ && nowNs - *askedNs_ <= kLeaveNs) {
+        desk_.carryOut("stop", rank);
+    } else {
+        askedNs_ = nowNs;
+        answer(rank, kEndsByAnother);
+    }
+}
+
+void WindowDesk::obey(const lockstep::KeyFound& found, int rank) {
     using lockstep::KeyAction;
-    const KeyAction action = found->entry.action;
+    const KeyAction action = found.entry.action;
     if (action == KeyAction::frameView) {
         if (!desk_.views.moves()) {
             answer(rank, kFixedView);
@@ -45,10 +69,10 @@ void WindowDesk::obey(base::Keystroke key, int rank) {
         depth_ = kUsualDepth;
     }
     try {
-        for (const std::string& command : commandsOf(*found, keyState(action == KeyAction::save))) {
+        for (const std::string& command : commandsOf(found, keyState(action == KeyAction::save))) {
             desk_.carryOut(command, rank);
         }
-        answer(rank, answerOf(*found, keyState(false)));
+        answer(rank, answerOf(found, keyState(false)));
     } catch (const base::InputError& error) {
         answer(rank, error.what());
     }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,8 +36,8 @@ public:
     /// session. The objects that `desk` refers to must outlive this one.
     WindowDesk(const scene::Scene& scene, std::filesystem::path out, bool pointer, Desk desk);
 
-    /// Carries out a key that was pressed in a window of `rank`.
-    void obey(base::Keystroke key, int rank);
+    /// Carries out a key that was pressed in a window of `rank` at `nowNs`.
+    void obey(base::Keystroke key, int rank, std::int64_t nowNs);
     /// Moves the view as the pointers in the ranks' windows have dragged it, and zooms by their wheels. If the view is
     /// fixed, the wheels count as PointerReport::depth instead. An attempt to move a fixed view is answered in its
     /// window.
@@ -54,6 +55,10 @@ public:
     [[nodiscard]] std::vector<lockstep::Answer> answers(std::int64_t nowNs);
 
 private:
+    /// Carries out a key that has an entry.
+    void obey(const lockstep::KeyFound& found, int rank);
+    /// Closes the help. If it is closed, asks, and ends the session if a person asks again.
+    void leave(const lockstep::KeyFound& found, int rank, std::int64_t nowNs);
     void resizeTool(double notches, int rank);
     /// Returns the state from which a key starts, with a name for a file if it `saves`.
     [[nodiscard]] KeyState keyState(bool saves);
@@ -66,9 +71,10 @@ private:
     const std::filesystem::path out_;
     const bool pointer_;
     Answers answers_;
-    bool hinted_ = false;         // whether the hint was shown
-    double depth_ = kUsualDepth;  // of the pointer's tool [tool radius]
-    int savesByKey_ = 0;          // number of the last file that a key has asked for
+    bool hinted_ = false;                  // whether the hint was shown
+    double depth_ = kUsualDepth;           // of the pointer's tool [tool radius]
+    std::optional<std::int64_t> askedNs_;  // when a person was last asked whether the session ends
+    int savesByKey_ = 0;                   // number of the last file that a key has asked for
 };
 
 }  // namespace master

@@ -101,7 +101,7 @@ public:
     /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn. `changed` has the pixels of each
     /// window's back buffer that have changed since the last swap.
     virtual void swap(std::uint64_t /* frame */, std::span<const PixelRect> /* changed */) {}
-    /// Returns the keys that were pressed in the windows since the last call. Closing a window is Escape.
+    /// Returns the keys that were pressed in the windows since the last call. Closing a window is base::kCloseKey.
     [[nodiscard]] virtual std::vector<base::Keystroke> takeKeys() { return {}; }
     /// Returns the events of the pointer in the windows since the last call, in the order of time. Returns an empty
     /// list if the request was without the pointer.

@@ -75,7 +75,7 @@ public:
         for (const GlfwWindow& window : windows_) {
             if (glfwWindowShouldClose(window.handle()) != 0 && (mayClose_ || !window.isPlaced())) {
                 glfwSetWindowShouldClose(window.handle(), GLFW_FALSE);
-                input_->keys.push_back({base::Keystroke::kEscape, 0, 0});
+                input_->keys.push_back(base::kCloseKey);
             } else if (glfwWindowShouldClose(window.handle()) != 0) {
                 throw std::runtime_error("output " + window.name() + ": its window on " + watch_.name() +
                                          " was closed");

@@ -232,6 +232,19 @@ void GlfwWindow::toggleFullScreen(GLFWwindow* window) {
     }
 }
 
+bool GlfwWindow::leave(GLFWwindow* window) {
+    auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(window));
+    if (std::exchange(listener.stroke, false)) {
+        addPointer(window, PointerEvent::Kind::release);
+        return true;
+    }
+    const bool full = glfwGetWindowAttrib(window, GLFW_RESIZABLE) != 0 && glfwGetWindowMonitor(window) != nullptr;
+    if (full) {
+        toggleFullScreen(window);
+    }
+    return full;
+}
+
 /// Each press is a key event. If it types a character, a character event follows.
 void GlfwWindow::followKeys() {
     glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {
@@ -240,6 +253,9 @@ void GlfwWindow::followKeys() {
             const char* name = glfwGetKeyName(key, scancode);
             if (key == GLFW_KEY_F11 && action == GLFW_PRESS && glfwGetWindowAttrib(window, GLFW_RESIZABLE) != 0) {
                 toggleFullScreen(window);
+            }
+            if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS && leave(window)) {
+                return;
             }
             listener.key = {key, modifiers, action == GLFW_REPEAT, name == nullptr ? "" : name};
             listener.add(pressedKey(listener.key));
@@ -273,7 +289,10 @@ void GlfwWindow::followPointer() {
         const bool down = action == GLFW_PRESS;
         const bool pans = button == GLFW_MOUSE_BUTTON_MIDDLE || (modifiers & GLFW_MOD_SHIFT) != 0;
         if (button == GLFW_MOUSE_BUTTON_LEFT) {
-            addPointer(window, down ? Kind::press : Kind::release);
+            auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(window));
+            if (std::exchange(listener.stroke, down) || down) {  // after Escape, the release has come before
+                addPointer(window, down ? Kind::press : Kind::release);
+            }
         } else if (button == GLFW_MOUSE_BUTTON_RIGHT || button == GLFW_MOUSE_BUTTON_MIDDLE) {
             addPointer(window, !down ? Kind::viewRelease : pans ? Kind::panPress : Kind::turnPress);
         }

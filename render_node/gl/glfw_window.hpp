@@ -82,6 +82,7 @@ private:
         std::shared_ptr<WindowInput> input;
         std::size_t window = 0;
         glm::dvec2 at{0};                          // [pixel], of the pointer's last motion
+        bool stroke = false;                       // the left button is held, and Escape has not lifted the tool
         bool exposed = true;                       // the window has lost pixels, or has shown none yet
         KeyEvent key{};                            // the last one, which may type a character
         glm::ivec2 pixels{1};                      // size of the window
@@ -94,6 +95,8 @@ private:
         }
     };
     void followKeys();
+    /// Lifts the tool of a stroke, or leaves full screen. Returns whether there was one of them.
+    static bool leave(GLFWwindow* window);
     static void addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches = 0);
     static void toggleFullScreen(GLFWwindow* window);
     void followPointer();

@@ -47,7 +47,7 @@ def windows_of(wall, render_node, check):
 
 def print_greeting(wall, scene):
     """Tells the person what opens and how to use it, before anything that the programs print."""
-    print_line(f"opening {pathlib.Path(wall).stem} with the scene {pathlib.Path(scene).stem}: dig with the left mouse button; h shows the keys, Escape ends")
+    print_line(f"opening {pathlib.Path(wall).stem} with the scene {pathlib.Path(scene).stem}: dig with the left mouse button; h shows the keys, Escape twice ends")
 
 
 def again(args, scene):
@@ -81,7 +81,7 @@ def add_parser(commands, run):
     """Adds `try` to the launcher's commands."""
     command = commands.add_parser("try", help="dig in sand on this desktop, with the mouse",
                                   description="Shows sand in a window of this desktop, where the mouse digs. The next `try` continues with the sand. "
-                                              "Escape ends it; docs/pointer.md.")
+                                              "Escape, pressed twice, ends it; docs/pointer.md.")
     command.set_defaults(run=run)
     command.add_argument("terrain", nargs="?", metavar="NAME|FILE", help="the same as --scene")
     command.add_argument("--scene", metavar="NAME|FILE", help=f"a sample's name, a scene file, or a raster, a picture or points (default: {SCENE})")

@@ -79,7 +79,7 @@ TEST_F(Displays, TilesAreSeenWhereTheWallFileSaysAndKeysAreObeyedInAnyWindow) {
             << "the other tile still shows sand";
         session->type("pattern none");
         EXPECT_TRUE(screen.comesToShow(left, 10, 20)) << "the sand does not come back";
-        screen.type(windows[0], support::XScreen::kEscape);
+        screen.type(windows[0], 'q', support::XScreen::kControl);
     }
     expectInOrder(*session);
     EXPECT_EQ(left.rgb, tile("r1c1_middle").rgb);

@@ -119,7 +119,8 @@ TEST(KeyList, IsWhatTheDocumentShows) {
 
 TEST(KeyList, KnowsWhatEndsASession) {
     EXPECT_TRUE(lockstep::isQuitKey({Keystroke::kEscape, 0, 0}));
-    EXPECT_TRUE(lockstep::isQuitKey(press('q')));
+    EXPECT_FALSE(lockstep::isQuitKey(press('q'))) << "it is beside W";
+    EXPECT_FALSE(lockstep::findKey(press('q')));
     EXPECT_TRUE(lockstep::isQuitKey(press('q', Keystroke::kControl)));
     EXPECT_FALSE(lockstep::isQuitKey(press('q', Keystroke::kShift)));
     EXPECT_FALSE(lockstep::isQuitKey({}));

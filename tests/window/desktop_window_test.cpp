@@ -67,7 +67,7 @@ TEST_F(DesktopWindow, ClosingItIsTheQuitKeyInEverySession) {
     screen_->askToClose(window_);
     std::vector<base::Keystroke> keys;
     EXPECT_TRUE(comes([&] { return !(keys = context_->windows().takeKeys()).empty(); }));
-    EXPECT_EQ(keys, std::vector{base::Keystroke{base::Keystroke::kEscape}});
+    EXPECT_EQ(keys, std::vector{base::kCloseKey});
 }
 
 TEST_F(DesktopWindow, BeginsWithTheSizeInTheWallFileIfItFits) {

@@ -131,6 +131,29 @@ TEST_F(Pointer, KeysAreCodesAndModifiers) {
                           {Keystroke::kEscape, 0, 0}}));
 }
 
+TEST_F(Pointer, EscapeLiftsTheToolOfAStroke) {
+    open(true);
+    using Kind = render_node::PointerEvent::Kind;
+    screen_->point(window_, 120, 60);
+    screen_->button(window_, 1, true);
+    screen_->type(window_, support::XScreen::kEscape);
+    screen_->button(window_, 1, false);
+    screen_->type(window_, support::XScreen::kEscape);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    Keys keys;
+    std::vector<Kind> kinds;
+    while (keys.empty() && std::chrono::steady_clock::now() < until) {
+        keys = context_->windows().takeKeys();
+        for (const render_node::PointerEvent& event : context_->windows().takePointer()) {
+            if (event.kind != Kind::move) {
+                kinds.push_back(event.kind);
+            }
+        }
+    }
+    EXPECT_EQ(kinds, (std::vector{Kind::press, Kind::release})) << "the button comes up later";
+    EXPECT_EQ(keys, (Keys{{base::Keystroke::kEscape, 0, 0}})) << "only the second one is a key of the session";
+}
+
 TEST_F(Pointer, ClosingAWindowIsTheQuitKey) {
     open(true);
     screen_->askToClose(window_);
@@ -139,7 +162,7 @@ TEST_F(Pointer, ClosingAWindowIsTheQuitKey) {
     while (keys.empty() && std::chrono::steady_clock::now() < until) {
         keys = context_->windows().takeKeys();
     }
-    EXPECT_EQ(keys, (Keys{{base::Keystroke::kEscape, 0, 0}}));
+    EXPECT_EQ(keys, Keys{base::kCloseKey});
 }
 
 // The window has no focus, so that GLFW does not release its buttons when it is hidden.

@@ -258,7 +258,7 @@ TEST_F(Window, OfAWallOnADeskEndsTheSessionWhenItIsClosed) {
         screen.askToClose(screen.windows().back());
     }
     const std::string output = ask("keys", "keys taken");
-    EXPECT_EQ(linesOf(output, "key"), std::vector<std::string>{"27"});  // Escape
+    EXPECT_EQ(linesOf(output, "key"), std::vector<std::string>{"113"});  // Ctrl+Q
     probe_->type("end");
     EXPECT_EQ(probe_->wait(kLong), 0);
 }

@@ -195,13 +195,13 @@ TEST_F(Desk, WantsACaptureOfTheNextFrame) {
     EXPECT_TRUE(answer.get().is_discarded());
 }
 
-TEST_F(Desk, EndsTheSessionByCommandOrByEscape) {
+TEST_F(Desk, EndsTheSessionByCommandOrByKey) {
     EXPECT_FALSE(desk_->stopAsked());
     EXPECT_EQ(ask("stop")["ok"], true);
     EXPECT_TRUE(desk_->stopAsked());
     open(nullptr);
     EXPECT_FALSE(desk_->stopAsked());
-    desk_->obey({{.key = {Keystroke::kEscape, 0, 0}}});
+    desk_->obey({{.key = base::kCloseKey}});
     EXPECT_TRUE(desk_->stopAsked());
 }
 

@@ -257,4 +257,47 @@ TEST_F(MountainDesk, BeginsWithTheWholeTerrainInView) {
     EXPECT_LT(desk_->views().at(0).sceneToRoom[0], ofTheFile[0]) << "smaller than the wall file has it";
 }
 
+constexpr Keystroke kEscape{Keystroke::kEscape, 0, 0};
+
+TEST_F(WindowDesk, EscapeClosesTheHelpAndEndsTheSessionOnlyIfItComesTwice) {
+    openForPointer();
+    master::WindowDesk& windows = desk_->windows();
+    windows.obey(plain('h'), 1, 0);
+    windows.obey(kEscape, 1, 1);
+    EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
+    EXPECT_FALSE(desk_->stopAsked());
+    windows.obey(kEscape, 1, 2);
+    EXPECT_EQ(answerIn(1), master::kEndsByAnother);
+    windows.obey({Keystroke::kEscape, 0, 1}, 1, 3);
+    EXPECT_FALSE(desk_->stopAsked()) << "a held key is one press";
+    windows.obey(kEscape, 1, 3 + master::kLeaveNs);
+    EXPECT_FALSE(desk_->stopAsked()) << "it comes too late, and asks again";
+    windows.obey(kEscape, 1, 3 + 2 * master::kLeaveNs);
+    EXPECT_TRUE(desk_->stopAsked());
+}
+
+TEST_F(WindowDesk, AsksOnAWallWithoutAPointerToo) {
+    desk_->windows().obey(kEscape, 1, 0);
+    EXPECT_FALSE(desk_->stopAsked());
+    EXPECT_EQ(answerIn(1), master::kEndsByAnother);
+    desk_->windows().obey(kEscape, 1, 1);
+    EXPECT_TRUE(desk_->stopAsked());
+}
+
+TEST_F(WindowDesk, AnswersAKeyWithoutMeaning) {
+    openForPointer();
+    press(plain('q'));
+    EXPECT_FALSE(desk_->stopAsked());
+    EXPECT_EQ(answerIn(1), master::kNoSuchKey);
+}
+
+TEST_F(WindowDesk, LeavesKeysOfTheDesktopAndHeldKeysUnanswered) {
+    openForPointer();
+    for (const Keystroke key : {Keystroke{'x', Keystroke::kSuper, 0}, Keystroke{'x', Keystroke::kAlt, 0},
+                                Keystroke{'x', 0, 1}, Keystroke{'u', 0, 1}}) {
+        press(key);
+        EXPECT_NE(answerIn(1), master::kNoSuchKey) << key.code;
+    }
+}
+
 }  // namespace

@@ -136,7 +136,7 @@ class FourWindows(pointer_fixture.WindowTest):
         self.assertEqual(self.session.heights_changed(), before)
 
     def test_5_escape_ends_the_session(self):
-        self.session.end("key", "Escape")
+        self.session.end("key", "ctrl+q")
 
 
 class WallOnADesktop(pointer_fixture.WindowTest):
@@ -157,7 +157,7 @@ class WallOnADesktop(pointer_fixture.WindowTest):
                 self.assertNotEqual(picture.pixel(*place), (0, 0, 0), f"{place} of {name}")
         for place in ((0, 7), (639, 7), (320, 7), (191, 200), (448, 200), (320, 392), (0, 399)):
             self.assertEqual(picture.pixel(*place), (0, 0, 0), f"{place} is beside all windows")
-        self.assertEqual(self.session.end("key", "Escape")["ranks"], 4)
+        self.assertEqual(self.session.end("key", "ctrl+q")["ranks"], 4)
         # One furrow runs south, from the sand behind the front screen to that above the floor.
         dug = [any(value < DUG for value in row) for row in self.session.heights_changed()]
         first, last = dug.index(True), len(dug) - 1 - dug[::-1].index(True)
@@ -174,11 +174,11 @@ class SandOfTry(pointer_fixture.WindowTest):
         self.assertAlmostEqual(self.session.status()["tool_radius"], 24, delta=0.1)  # 1/40 of 960
         display.keep("try_of_a_raster.png")
         self.session.drag([(250, 180), (300, 180)])
-        first = self.session.end("key", "Escape")
+        first = self.session.end("key", "ctrl+q")
         self.begin(display, "try", self.folder / "valley.asc")
         self.assertGreaterEqual(self.session.status()["step"], first["steps"])
         self.session.drag([(250, 120), (300, 120)])
-        self.session.end("key", "Escape")
+        self.session.end("key", "ctrl+q")
         log = self.session.log.read_text()
         self.assertIn("continues with your sand of ", log)
         self.assertIn("` continues with this sand, and another --out begins with new sand", log)
