@@ -29,9 +29,9 @@ constexpr std::array kTools = [] {
 constexpr std::array kLarger{plain('+'), plain('='),
                              named(Keystroke::kPageUp)};  // = is + without Shift on many keyboards
 constexpr std::array kSmaller{plain('-'), named(Keystroke::kPageDown)};
-constexpr std::array kTurnLeft{plain(',')}, kTurnRight{plain('.')};
+constexpr std::array kTurn{plain(','), plain('.')};
 constexpr std::array kScene{plain('0')};
-constexpr std::array kWetter{plain('w')}, kDrier{plain('d')};
+constexpr std::array kHumidity{plain('w'), plain('d')};
 constexpr std::array kUndo{control('z'), plain('u')};
 constexpr std::array kReset{shift('r')};
 constexpr std::array kFrame{named(Keystroke::kHome), plain('v')};
@@ -45,14 +45,12 @@ constexpr std::array kHelp{named(Keystroke::kF1), plain('?'), plain('h')};
 constexpr std::array kLeave{named(Keystroke::kEscape)};
 constexpr std::array kQuit{base::kCloseKey};
 
-constexpr std::array<KeyEntry, 23> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
+constexpr std::array<KeyEntry, 21> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
                                           {KeyAction::larger, kLarger, "larger tool", true},
                                           {KeyAction::smaller, kSmaller, "smaller tool", true},
-                                          {KeyAction::turnLeft, kTurnLeft, "turns tool left", true},
-                                          {KeyAction::turnRight, kTurnRight, "turns tool right", true},
+                                          {KeyAction::turn, kTurn, "turns the tool", true},
                                           {KeyAction::sceneTool, kScene, "tool of the scene"},
-                                          {KeyAction::wetter, kWetter, "wetter sand", true},
-                                          {KeyAction::drier, kDrier, "drier sand", true},
+                                          {KeyAction::humidity, kHumidity, "wetter, drier sand", true},
                                           {KeyAction::undo, kUndo, "undoes the last stroke"},
                                           {KeyAction::reset, kReset, "resets, without undo"},
                                           {KeyAction::frameView, kFrame, "frames the terrain"},

@@ -17,11 +17,9 @@ enum class KeyAction : std::uint8_t {
     tool,  // one of the tools, in the order of their kinds
     larger,
     smaller,
-    turnLeft,  // turns the tool
-    turnRight,
+    turn,       // turns the tool to the left, or by its second key to the right
     sceneTool,  // tool and humidity as the scene has them, and the usual depth
-    wetter,
-    drier,
+    humidity,   // makes the sand wetter, or by its second key drier
     undo,
     reset,
     frameView,

@@ -43,16 +43,12 @@ std::vector<std::string> commandsOf(const lockstep::KeyFound& key, const KeyStat
             return {resized(1)};
         case KeyAction::smaller:
             return {resized(-1)};
-        case KeyAction::turnLeft:
-            return {turnedBy(kTurnDegrees)};
-        case KeyAction::turnRight:
-            return {turnedBy(-kTurnDegrees)};
+        case KeyAction::turn:
+            return {turnedBy(key.index == 0 ? kTurnDegrees : -kTurnDegrees)};
         case KeyAction::sceneTool:
             return {toolOfScene(state.ofScene), humidityOf(state.ofScene.humidity)};
-        case KeyAction::wetter:
-            return {humidityOf(moistened(state.material.humidity, kMoreHumidity))};
-        case KeyAction::drier:
-            return {humidityOf(moistened(state.material.humidity, -kMoreHumidity))};
+        case KeyAction::humidity:
+            return {humidityOf(moistened(state.material.humidity, key.index == 0 ? kMoreHumidity : -kMoreHumidity))};
         case KeyAction::undo:
             return {"undo"};
         case KeyAction::reset:
@@ -114,15 +110,13 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
         case KeyAction::larger:
         case KeyAction::smaller:
             return edited(sizeInWords(after));
-        case KeyAction::turnLeft:
-        case KeyAction::turnRight:
+        case KeyAction::turn:
             return edited(sand::isRound(after.material.toolKind)
                               ? fmt::format("a {} is round: its heading shows in no furrow", tool)
                               : fmt::format("heading {:.0f}°", after.material.toolHeading));
         case KeyAction::sceneTool:
             return edited("tool and humidity of the scene, usual depth");
-        case KeyAction::wetter:
-        case KeyAction::drier:
+        case KeyAction::humidity:
             return edited(fmt::format("humidity {:.0f} %", 100 * after.material.humidity));
         case KeyAction::undo:
             return edited("undone");

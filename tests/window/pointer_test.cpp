@@ -133,7 +133,6 @@ TEST_F(Pointer, KeysAreCodesAndModifiers) {
 
 TEST_F(Pointer, EscapeLiftsTheToolOfAStroke) {
     open(true);
-    using Kind = render_node::PointerEvent::Kind;
     screen_->point(window_, 120, 60);
     screen_->button(window_, 1, true);
     screen_->type(window_, support::XScreen::kEscape);
