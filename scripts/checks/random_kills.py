@@ -46,8 +46,10 @@ class Session:
         self.out.mkdir(parents=True, exist_ok=True)
         self.log = open(self.out / "random_kills.log", "wb")
         self.command = [str(ROOT / "scripts" / "sandwall"), "run", "--wall", args.wall, "--scene", args.scene, "--out", args.out,
-                        "--device", "script:gis", "--gl", layout.in_memory(), "--no-pictures", "--frame-timeout", str(args.frame_timeout),
+                        "--device", "script:gis", "--gl", layout.in_memory(), "--no-pictures",
                         "--restarts", "100000", "--restart-window", "0.001", *args.options]
+        if args.frame_timeout is not None:
+            self.command += ["--frame-timeout", str(args.frame_timeout)]
         self.launcher = None
 
     def start(self, *more):
