@@ -10,6 +10,7 @@
 #include "host/whole_file.hpp"
 #include "walls/check_scene.hpp"
 #include "walls/desk_windows.hpp"
+#include "walls/new_wall.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_report.hpp"
 #include "walls/wall_svg.hpp"
@@ -17,7 +18,7 @@
 namespace {
 
 struct Options {
-    std::string wall, scene, stereo, svg, desk;
+    std::string wall, newGrid, scene, stereo, svg, desk;
     bool mono = false, ranks = false, hosts = false, outputs = false, cells = false, memory = false,
          noCheckpoints = false;
 };
@@ -35,6 +36,13 @@ int check(const Options& options) {
     }
     if (options.wall.empty() && (options.scene.empty() || options.memory)) {
         throw base::InputError(options.memory ? "--memory: name a WALL, too" : "name a WALL, or a scene with --scene");
+    }
+    if (!options.newGrid.empty()) {
+        if (options.wall.empty()) {
+            throw base::InputError("--new: name the file that is written, such as my_wall.toml");
+        }
+        walls::writeNewWall(options.wall, options.newGrid);
+        fmt::print("{}: written; change its values to those of your wall\n", options.wall);
     }
     const std::optional<walls::Wall> known = options.wall.empty() ? std::nullopt : std::optional(wallOf(options));
     if (options.memory) {
@@ -73,6 +81,8 @@ int main(int argc, char** argv) {
     host::CommandLine line("Checks a wall file or a scene file and prints what it describes.", "sandwall-check");
     Options options;
     line.option("WALL", options.wall, "a wall file (docs/wall_files.md)");
+    line.option("--new", options.newGrid, "write the wall file first: a grid of displays, such as 2x2")
+        .metavar("ROWSxCOLUMNS");
     line.option("--scene", options.scene, "check this scene file, too, and print units and no data of its terrain");
     const host::Option stereo = line.option("--stereo", options.stereo, "check it as shown in this mode");
     line.flag("--cells", options.cells, "print only columns, rows and cell size [scene unit] of the scene");
