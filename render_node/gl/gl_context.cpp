@@ -43,13 +43,18 @@ bool isSoftware(Backend backend, const walls::Tile& tile) {
     return backend == Backend::automatic && backendFor(backend, tile) == Backend::egl && tile.place.device < 0;
 }
 
-/// Returns the title of an output's window, such as "dunes, tile r1c2, left eye - Sandwall".
-std::string titleOf(const std::string& sceneName, const walls::Tile& tile, const walls::Output& output) {
-    std::string eyes;
-    for (const walls::Eye eye : output.eyes) {
-        eyes += (eyes.empty() ? "" : " and ") + std::string(walls::eyeName(eye));
+/// Returns the title of an output's window, such as "Sandwall – dunes". If the wall has several windows, it names the
+/// tile, and if the tile has several, the eye.
+std::string titleOf(const std::string& sceneName, const walls::Wall& wall, const walls::Tile& tile,
+                    const walls::Output& output) {
+    std::string title = "Sandwall" + (sceneName.empty() ? "" : " – " + sceneName);
+    if (wall.tiles.size() > 1) {
+        title += ", tile " + tile.name;
     }
-    return (sceneName.empty() ? "" : sceneName + ", ") + "tile " + tile.name + ", " + eyes + " eye - Sandwall";
+    if (tile.outputs.size() > 1) {
+        title += ", " + std::string(walls::eyeName(output.eyes.front())) + " eye";
+    }
+    return title;
 }
 
 }  // namespace
@@ -115,7 +120,7 @@ PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const 
     if (backendFor(backend, tile) == Backend::glfw) {
         for (const walls::Output& output : tile.outputs) {
             request.windows.push_back({output, walls::outputPixels(wall.stereo, tile.pixels),
-                                       walls::followsWindow(wall), titleOf(sceneName, tile, output)});
+                                       walls::followsWindow(wall), titleOf(sceneName, wall, tile, output)});
         }
     }
     return request;

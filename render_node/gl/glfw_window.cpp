@@ -88,12 +88,15 @@ void hintContext(bool visible) {
         glfwWindowHint(off, GLFW_FALSE);
     }
     glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
+    // The class of the windows, by which a desktop groups and finds them.
+    glfwWindowHintString(GLFW_X11_CLASS_NAME, "sandwall");
+    glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "sandwall");
 }
 
-/// Returns the first size of a window that the picture follows: `wanted` times the monitor's scale, and at most 90 % of
+/// Returns the first size of a window that the picture follows: `wanted` times the monitor's scale, and at most 80 % of
 /// the first monitor's area for windows.
 glm::ivec2 firstSize(glm::ivec2 wanted) {
-    constexpr double kMost = 0.9;
+    constexpr double kMost = 0.8;
     GLFWmonitor* monitor = glfwGetPrimaryMonitor();
     const ScreenRect area = workArea();
     glm::vec2 scale(1);

@@ -58,8 +58,14 @@ protected:
 
 TEST_F(DesktopWindow, HasATitleAndAnIcon) {
     open({200, 100});
-    EXPECT_EQ(screen_->title(window_), "dunes, tile r1c1, middle eye - Sandwall");
+    EXPECT_EQ(screen_->title(window_), "Sandwall – dunes");
+    EXPECT_EQ(screen_->classOf(window_), "sandwall");
     EXPECT_TRUE(screen_->hasIcon(window_));
+}
+
+TEST_F(DesktopWindow, NamesItsTileIfTheWallHasSeveralWindows) {
+    open({200, 100}, 2);
+    EXPECT_EQ(screen_->title(window_), "Sandwall – dunes, tile r1c1");
 }
 
 TEST_F(DesktopWindow, ClosingItIsTheQuitKeyInEverySession) {
@@ -75,9 +81,9 @@ TEST_F(DesktopWindow, BeginsWithTheSizeInTheWallFileIfItFits) {
     EXPECT_EQ(context_->windows().followedSize(0), glm::ivec2(200, 100));
 }
 
-TEST_F(DesktopWindow, BeginsWithAtMostNineTenthsOfTheScreen) {
+TEST_F(DesktopWindow, BeginsWithAtMostEightTenthsOfTheScreen) {
     open({1000, 500});
-    EXPECT_EQ(context_->windows().followedSize(0), glm::ivec2(576, 288));
+    EXPECT_EQ(context_->windows().followedSize(0), glm::ivec2(512, 256));
 }
 
 TEST_F(DesktopWindow, BeginsLargerByTheScaleOfTheMonitor) {

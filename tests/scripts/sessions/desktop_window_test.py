@@ -27,7 +27,7 @@ class DesktopWindow(window_fixture.WindowOfTry):
         self.assertLessEqual((width, height), (0.9 * SCREEN[0], 0.9 * SCREEN[1]))
         self.assertAlmostEqual(width / height, 1280 / 720, delta=0.01)
         self.assertGreater(width, 0.8 * SCREEN[0])
-        self.assertEqual(self.desktop.do("getwindowname", self.window).strip(), "mountain, tile r1c1, middle eye - Sandwall")
+        self.assertEqual(self.desktop.do("getwindowname", self.window).strip(), "Sandwall – mountain")
         self.desktop.do("mousemove", 1, 1)
         bar = self.desktop.screen().part(x, y - 10, width, 1)
         self.assertNotEqual(set(bar.rows[0]), {0}, "a title bar above the window")

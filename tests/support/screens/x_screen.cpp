@@ -138,11 +138,26 @@ std::vector<unsigned long> XScreen::windows() const {
 }
 
 std::string XScreen::title(unsigned long window) const {
-    char* name = nullptr;
-    XFetchName(display_.get(), window, &name);
-    std::string title = name == nullptr ? "" : name;
-    XFree(name);
+    Atom type = None;
+    int format = 0;
+    unsigned long bytes = 0, left = 0;
+    unsigned char* text = nullptr;
+    XGetWindowProperty(display_.get(), window, XInternAtom(display_.get(), "_NET_WM_NAME", False), 0, 256, False,
+                       XInternAtom(display_.get(), "UTF8_STRING", False), &type, &format, &bytes, &left, &text);
+    std::string title(reinterpret_cast<const char*>(text), text == nullptr ? 0 : bytes);
+    XFree(text);
     return title;
+}
+
+std::string XScreen::classOf(unsigned long window) const {
+    XClassHint hint{};
+    if (XGetClassHint(display_.get(), window, &hint) == 0) {
+        return {};
+    }
+    std::string name = hint.res_class;
+    XFree(hint.res_name);
+    XFree(hint.res_class);
+    return name;
 }
 
 bool XScreen::hasIcon(unsigned long window) const {

@@ -35,6 +35,7 @@ public:
     /// Returns the visible windows, the lowest one first.
     [[nodiscard]] std::vector<unsigned long> windows() const;
     [[nodiscard]] std::string title(unsigned long window) const;
+    [[nodiscard]] std::string classOf(unsigned long window) const;
     [[nodiscard]] bool hasIcon(unsigned long window) const;
     void resize(unsigned long window, int width, int height) const;
     void destroy(unsigned long window) const;
