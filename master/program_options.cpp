@@ -14,6 +14,9 @@ void describeSession(host::CommandLine& line, ProgramOptions& options) {
     line.option("--haptic", options.haptic, "address of the haptic server, or none").metavar("HOST:PORT").showDefault();
     options.link.addTo(line, false);
     line.flag("--pointer", session.pointer, "the hand is the pointer of the ranks' windows (docs/pointer.md)");
+    line.flag("--visible-tool", session.desk.visibleTool,
+              "begin with a tool that is large enough to be seen, if that of the scene is smaller (docs/pointer.md)")
+        .offeredBy({"run"});
     line.choice(
             "--pace", session.pace,
             "fast: as fast as the machine can, and a recorded hand waits for the wall; not for driver: and spacenav")

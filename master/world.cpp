@@ -200,6 +200,8 @@ void chooseView(ProgramOptions& options, const World& world) {
     DeskOptions& desk = options.session.desk;
     desk.pointer = options.session.pointer;
     desk.film = options.session.film;
+    desk.visibleTool =
+        desk.visibleTool && options.session.record.resumed == nullptr;  // a person may have chosen another
     desk.pattern = lockstep::parsePattern(options.pattern);
     desk.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
     for (const std::string& layer : options.layers) {

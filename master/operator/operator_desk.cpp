@@ -55,6 +55,9 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
     views_.show(options.layers);
     views_.setHumidity(material_.humidity);
     windows_.frameView();
+    if (options.visibleTool) {
+        windows_.enlargeTool();
+    }
     if (const int port = views_.viewer().port(); port != 0) {
         fmt::print("head tracking listens on port {}\n", port);
         std::fflush(stdout);

@@ -33,6 +33,7 @@ struct DeskOptions {
     std::optional<double> force;  // share of the force that an operator has set; nullopt: none has
     bool film = false;            // the pictures have the size in the wall file
     bool pointer = false;         // the hand is the pointer, so that all keys of lockstep::keyList() act
+    bool visibleTool = false;     // begins with WindowDesk::enlargeTool()
 };
 
 /// Carries out and answers the commands that operators give a running session, on standard input or through its control

@@ -18,11 +18,14 @@ ToolLimits ToolLimits::of(const scene::Scene& scene) {
     const double side = std::min(scene.rules.columns, scene.rules.rows) * cell;
     const double least = kShortest * cell / 2;
     const double most = std::min(kLongest * side / 2, double{sand::kLargestToolRadius} / sand::kProbePerCell * cell);
-    return {least, std::max(least, most)};
+    const double usual = scene::usualToolRadius(scene.rules.columns, scene.rules.rows, cell);
+    return {least, std::max(least, most), usual};
 }
 
 double ToolLimits::resized(double radius, double notches) const {
-    return std::clamp(radius * std::pow(kWider, notches), std::min(least, radius), std::max(most, radius));
+    const double wanted = radius * std::pow(kWider, notches);
+    return notches > 0 ? std::clamp(wanted, least, std::max(most, radius))
+                       : std::clamp(wanted, std::min(least, radius), most);
 }
 
 double deepened(double depth, double notches) {

@@ -10,13 +10,14 @@ namespace master {
 /// Smallest and largest radius to which keys and the wheel change the tool [scene unit].
 struct ToolLimits {
     double least = 0, most = 0;
+    double usual = 0;  // size of a tool that can be seen, scene::usualToolRadius()
 
     /// Returns the limits for the sand of `scene`: the tool is from two cells to a quarter of the field's shorter side
     /// long. So a held key cannot lose it.
     [[nodiscard]] static ToolLimits of(const scene::Scene& scene);
     /// Returns the radius after `notches` of the wheel or presses of a key, each by a factor of 1.25; negative ones
-    /// make it smaller. A tool of a scene may be outside of the limits. It then comes back to them, and never goes
-    /// farther.
+    /// make it smaller. A tool of a scene may be outside of the limits. A change towards them then goes to the nearer
+    /// one at least, and a change away from them does nothing.
     [[nodiscard]] double resized(double radius, double notches) const;
 };
 

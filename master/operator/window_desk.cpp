@@ -133,6 +133,12 @@ void WindowDesk::resizeTool(double notches, int rank) {
     }
 }
 
+void WindowDesk::enlargeTool() {
+    if (desk_.material.toolRadius < toolLimits_.usual) {
+        desk_.carryOut(fmt::format("tool radius={}", toolLimits_.usual), 0);
+    }
+}
+
 void WindowDesk::answer(int rank, const std::string& text) { answers_.show(rank, text, host::monotonicNs()); }
 
 std::vector<lockstep::Answer> WindowDesk::answers(std::int64_t nowNs) {

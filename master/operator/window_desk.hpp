@@ -46,6 +46,8 @@ public:
     void turnWheels(std::span<const haptic_bridge::PointerReport> pointers);
     /// Frames the terrain, if people may move the view.
     void frameView();
+    /// Gives the tool its usual size by an edit, if that of the scene is smaller.
+    void enlargeTool();
     /// Returns the depth of the pointer's tool [tool radius].
     [[nodiscard]] double depth() const { return depth_; }
     /// Shows an answer in the windows of a rank.

@@ -66,6 +66,7 @@ void readShape(const host::TomlTable& tool, Material& material) {
 void readTool(const host::TomlTable& file, Scene& scene) {
     const std::optional<host::TomlTable> tool = file.table("tool");
     double& radius = scene.material.toolRadius;
+    radius = scene::usualToolRadius(scene.rules.columns, scene.rules.rows, scene.terrain.cellSize());
     radius = tool ? tool->numberOr("radius", radius, host::kPositive) : radius;
     if (tool) {
         readShape(*tool, scene.material);

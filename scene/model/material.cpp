@@ -85,6 +85,11 @@ double Material::talus() const { return dryTalus + humidity * (wetTalusNow() - d
 
 std::span<const MaterialKey> materialKeys() { return kMaterialKeys; }
 
+double usualToolRadius(int columns, int rows, double cellSize) {
+    constexpr double kShare = 1.0 / 40, kFewest = 2, kMost = 128;  // of the shorter side; [cell]
+    return std::clamp(kShare * std::min(columns, rows), kFewest, kMost) * cellSize;
+}
+
 std::optional<MaterialFault> faultOf(const Material& material, const MaterialGrid& grid) {
     const double cells = material.toolRadius / grid.cellSize;
     if (!(cells <= kLargestTool)) {

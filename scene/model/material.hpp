@@ -24,7 +24,7 @@ struct Material {
     double cohesionLength = 0;       // [scene unit], height of the step that sand bears at w = 1
     double band = 0.001;             // share of the threshold beyond which sand at rest starts to slide
     double settlingSeconds = 0.1;    // until sand beside the tool rests
-    double toolRadius = 0.01;        // [scene unit], half of its length; default: the sphere of Dorjgotov et al. 2007
+    double toolRadius = 0.01;        // [scene unit], half of its length; a scene without one has usualToolRadius()
     sand::ToolKind toolKind = sand::ToolKind::sphere;
     std::optional<double> toolWidth;  // ratio of width to length; nullopt: the kind's default
     double toolHeading = 0;           // [deg] from east, counter-clockwise; the toes of a footprint point there
@@ -96,6 +96,9 @@ struct MaterialFault {
 /// known keys or the range.
 [[nodiscard]] Material withNumber(Material material, std::string_view word, double value, const MaterialGrid& grid);
 inline constexpr double kNarrowestTool = 0.05;  // ratio of width to length
+/// Returns the radius of a tool that is large enough to be seen and follows the hand: 1/40 of the shorter side of a
+/// field of columns x rows cells, and from 2 to 128 cells [scene unit].
+[[nodiscard]] double usualToolRadius(int columns, int rows, double cellSize);
 
 /// An operator's change of the tool. A part that is nullopt does not change. If the kind changes, however, the width
 /// becomes the default of the new kind.

@@ -63,8 +63,7 @@ def again(args, scene):
 def session_of(args, choice, scene):
     """Returns the words of `run` for `try`. A session that continues takes its scene from the journal, unless the user names one."""
     words = ["run", "--here", "--wall", layout.found("walls", args.wall), "--device", DEVICE, "--out", choice.out]
-    if not choice.begins:
-        words.append("--resume")
+    words.append("--visible-tool" if choice.begins else "--resume")
     if choice.begins or (args.out and args.scene):
         words += ["--scene", scene] + (["--as-heights"] if args.as_heights else [])
     return words

@@ -10,7 +10,7 @@ from base.console import print_line
 
 POINTER = "pointer"
 # The session would end at once, be as fast as it can, have the drills again, or write a recording over another one.
-LEFT_OUT = ("--steps", "--frames", "--warm-up", "--pace", "--inject", "--record")
+LEFT_OUT = ("--visible-tool", "--steps", "--frames", "--warm-up", "--pace", "--inject", "--record")
 NAMED = ("--secret-file", "--stereo", "--desk", "--gl")  # words_of() has them
 
 

@@ -17,12 +17,12 @@
 
 namespace {
 
-TEST_F(SceneFile, DefaultsAreThePapers) {
+TEST_F(SceneFile, DefaultsAreThePapersExceptTheTool) {
     const scene::Scene scene = scene::loadScene(write("s.toml", kFlat));
     EXPECT_EQ(scene.rules.columns, 512);
     EXPECT_EQ(scene.rules.rows, 512);
     EXPECT_DOUBLE_EQ(scene.terrain.cellSize(), 2.0 / 512);
-    EXPECT_EQ(scene.rules.tuning.tool.radius, 655);  // 2.56 cells
+    EXPECT_EQ(scene.rules.tuning.tool.radius, 3277) << "12.8 cells, 1/40 of the side";
     EXPECT_EQ(scene.rules.tuning.threshold, std::lround(std::tan(34 * std::numbers::pi / 180) * 65536));
     EXPECT_EQ(scene.rules.stepsPerSecond, 60);
 }
@@ -115,8 +115,25 @@ TEST_F(SceneFile, UnknownSchemesAreRefusedWithTheKnownOnes) {
     }
 }
 
+TEST_F(SceneFile, WithoutARadiusHasAToolThatCanBeSeenAndFollowsTheHand) {
+    struct Size {
+        int columns, rows;
+        double cells;
+    };
+    for (const auto& [columns, rows, cells] :
+         {Size{12, 8, 2}, Size{80, 80, 2}, Size{81, 90, 2.025}, Size{5120, 6000, 128}, Size{16384, 5119, 127.975}}) {
+        EXPECT_DOUBLE_EQ(scene::usualToolRadius(columns, rows, 0.5), cells * 0.5) << columns << " x " << rows;
+    }
+    const std::string text =
+        "[field]\ncolumns = 200\nrows = 100\nwidth = 1\n[terrain]\n[material]\n[tool]\nshape = \"circle\"\n";
+    const scene::Scene scene = scene::loadScene(write("s.toml", text));
+    EXPECT_DOUBLE_EQ(scene.material.toolRadius, 2.5 / 200);
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
 TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
-    EXPECT_EQ(complaint("[field]\nwidth = 1e-10\n[terrain]\n[material]\n").find("s.toml:1: a tool of radius 0.01 is"),
+    EXPECT_EQ(complaint("[field]\ncolumns = 3\nrows = 3\n[terrain]\n[tool]\nshape = \"footprint\"\n")
+                  .find("s.toml:5: a footprint of radius 1.33333 is"),
               0U);
     EXPECT_EQ(complaint(kFlat + "[tool]\nradius = 10\n").find("s.toml:5: a tool of radius 10 is 2560 cells"), 0U);
     EXPECT_EQ(scene::loadScene(write("s.toml", kFlat + "[tool]\nradius = 0.003\n")).warnings.size(), 1U);

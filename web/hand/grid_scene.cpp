@@ -20,7 +20,6 @@ namespace web {
 namespace {
 
 constexpr int kStepsPerSecond = 60;  // of scenes, unless they say otherwise
-constexpr double kToolShare = 1.0 / 40;
 
 /// Returns a check of the size of a grid whose text has `bytes` bytes. The reader copies the text.
 scene::RasterCheck fits(const std::string& name, std::int64_t bytes, std::int64_t memory) {
@@ -86,7 +85,7 @@ scene::Scene sceneOfGrid(std::string_view text, const std::string& name, std::in
     scene::layTerrain(grid, unitsOf, scene.terrain, ground);
     scene.ground = ground;
     scene.rules.ground = ground == nullptr ? 0 : ground->digest();
-    scene.material.toolRadius = kToolShare * std::min(grid.columns, grid.rows) * grid.cellSize;
+    scene.material.toolRadius = scene::usualToolRadius(grid.columns, grid.rows, grid.cellSize);
     if (const auto fault = scene::faultOf(scene.material, scene.grid())) {
         throw base::InputError(fmt::format("{}: {}", name, fault->message));
     }

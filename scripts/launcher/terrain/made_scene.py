@@ -17,8 +17,6 @@ from terrain import kinds
 NAME = "made_scene.toml"  # in the session's folder
 FIRST_LINE = "# Made by sandwall"  # another file of this name is never replaced
 IMAGE_WIDTH, IMAGE_HEIGHT = 2.0, 0.3  # of a picture, from west to east and from black to white [scene unit]
-TOOL_SHARE = 1 / 40  # radius of the tool, of the shorter side
-LEAST_CELLS, MOST_CELLS = 2, 128  # of that radius [cell]
 RANGE = re.compile(r"a height of (-?[0-9.e+-]+) is beyond the range")
 NO_PLACE = "has no position and no pixel size"
 NO_RASTER = ": cannot be read as a raster: "
@@ -80,19 +78,11 @@ def terrain_keys(kind, path, datum):
     return lines + (["", "[tin]"] if kind == kinds.POINTS else [])
 
 
-def text_of(kind, path, datum, radius=None):
-    """Returns a scene in TOML. Without `radius`, it has the tool that a scene has by default."""
-    unit = "" if kind in (kinds.IMAGE, kinds.PHOTO, kinds.GSF) else ", the unit of the file"
+def text_of(kind, path, datum):
+    """Returns a scene in TOML."""
     lines = [f"{FIRST_LINE} from {checked_json.one_line(os.path.basename(path))}. A copy can be changed and given to --scene.",
              f"name = {quoted(pathlib.Path(path).stem)}", "", *terrain_keys(kind, path, datum)]
-    if radius is not None:
-        lines += ["", "[tool]", line("radius", f"{radius:g}", f"[scene unit]{unit}")]
     return "\n".join(lines) + "\n"
-
-
-def radius_of(columns, rows, cell):
-    """Returns the radius of a tool that is neither too small to be seen nor so large that it lags [scene unit]."""
-    return cell * min(max(TOOL_SHARE * min(columns, rows), LEAST_CELLS), MOST_CELLS)
 
 
 @contextlib.contextmanager
@@ -128,8 +118,8 @@ def of(named, kind):
     datum = 0
     while True:
         try:
-            columns, rows, cell = asked(path, text_of(kind, path, datum))
-            return MadeScene(named, text_of(kind, path, datum, radius_of(columns, rows, cell)), columns, rows, cell)
+            text = text_of(kind, path, datum)
+            return MadeScene(named, text, *asked(path, text))
         except BadInput as complaint:
             why = str(complaint)
             if kind == kinds.DEM and NO_RASTER in why:

@@ -26,13 +26,15 @@ TEST(ToolKeys, LetTheToolBeFromTwoCellsToAQuarterOfTheField) {
     EXPECT_DOUBLE_EQ(2 * radius, 20 * cell) << "a quarter of the shorter side";
 }
 
-TEST(ToolKeys, BringAToolOfASceneThatIsOutsideBack) {
+TEST(ToolKeys, BringAToolOfASceneThatIsOutsideToTheLimit) {
     const ToolLimits limits{1, 8};
     EXPECT_EQ(limits.resized(20, 1), 20) << "no larger";
-    EXPECT_EQ(limits.resized(20, -1), 16);
-    EXPECT_EQ(limits.resized(0.5, -1), 0.5) << "no smaller";
-    EXPECT_EQ(limits.resized(0.5, 1), 0.625);
+    EXPECT_EQ(limits.resized(20, -1), 8);
+    EXPECT_EQ(limits.resized(0.01, -1), 0.01) << "no smaller";
+    EXPECT_EQ(limits.resized(0.01, 1), 1) << "the first press, and not the twenty-first";
+    EXPECT_EQ(limits.resized(0.01, 0.1), 1);
     EXPECT_EQ(limits.resized(7.9, 1), 8);
+    EXPECT_EQ(limits.resized(1.1, -1), 1);
     EXPECT_EQ(limits.resized(4, 0.5), 4 * std::sqrt(1.25)) << "a wheel may turn by a part of a notch";
 }
 

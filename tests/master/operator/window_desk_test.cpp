@@ -44,6 +44,8 @@ protected:
         }
         return {};
     }
+    /// Returns the radius of the tool that was asked for last [1/256 cell].
+    [[nodiscard]] int radiusAsked() { return edits().back().tuning.tool.radius; }
     /// Applies two steps with a stroke, so that there is one to undo.
     void stroke() {
         std::vector<ArrivedStep> steps(2);
@@ -55,6 +57,22 @@ protected:
         sand_.apply(1, steps, 0, source_);
     }
 };
+
+TEST_F(WindowDesk, BeginsWithAToolThatCanBeSeenIfAskedTo) {
+    const double ofScene = scene_.material.toolRadius, cell = scene_.terrain.cellSize();
+    master::DeskOptions options;
+    options.pointer = options.visibleTool = true;
+    scene_.material.toolRadius = 0.5 * cell;
+    open(&force_, options);
+    EXPECT_EQ(radiusAsked(), 2 * sand::kProbePerCell) << "the least size of a usual tool";
+    press(plain('0'));
+    EXPECT_EQ(radiusAsked(), sand::kProbePerCell / 2) << "the scene's";
+    scene_.material.toolRadius = ofScene;
+    ASSERT_GT(ofScene, 2 * cell);
+    const std::size_t asked = edits().size();
+    open(&force_, options);
+    EXPECT_EQ(edits().size(), asked) << "the scene's tool is large enough";
+}
 
 TEST_F(WindowDesk, TakesKeysIfTheHandIsThePointer) {
     desk_->obey({{.key = kShiftR}, {.key = plain('h')}});

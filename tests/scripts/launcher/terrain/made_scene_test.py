@@ -61,20 +61,16 @@ class MadeTest(unittest.TestCase):
 
 
 class Made(MadeTest):
-    def test_a_raster_keeps_its_units_and_gets_a_tool_of_a_fortieth_of_the_shorter_side(self):
+    def test_a_raster_keeps_its_units_and_gets_the_usual_tool(self):
         made, scene = self.made(self.write("my valley.asc", grid()))
-        self.assertEqual(scene, {"name": "my valley", "terrain": {"kind": "dem", "file": os.path.abspath("my valley.asc")}, "tool": {"radius": 20}})
+        self.assertEqual(scene, {"name": "my valley", "terrain": {"kind": "dem", "file": os.path.abspath("my valley.asc")}})
         self.assertEqual(made[2:], (120, 80, 10))
 
     def test_a_geotiff_is_not_taken_for_a_text(self):
         self.write("valley.asc", grid())
         subprocess.run([BIN / "sandwall-relax", "valley.asc", "valley.tif", "--talus", "80"], check=True, capture_output=True, timeout=60)
         made, scene = self.made("valley.tif")
-        self.assertEqual((made[2:], scene["terrain"]["kind"], scene["tool"]["radius"]), ((120, 80, 10), "dem", 20))
-
-    def test_a_tool_has_from_2_to_128_cells(self):
-        for columns, rows, cells in ((12, 8, 2), (80, 80, 2), (81, 90, 2.025), (5120, 6000, 128), (5119, 6000, 127.975), (16384, 16384, 128)):
-            self.assertAlmostEqual(made_scene.radius_of(columns, rows, 0.5) / 0.5, cells)
+        self.assertEqual((made[2:], scene["terrain"]["kind"]), ((120, 80, 10), "dem"))
 
     def test_heights_beyond_the_range_of_cells_are_counted_from_a_height_of_the_raster(self):
         for height in (5000, -5000):
@@ -85,12 +81,11 @@ class Made(MadeTest):
         picture_files.write_png(picture_files.Picture(200, 100, [bytes((x + y) % 256 for x in range(200)) for y in range(100)]), "grey.png")
         made, scene = self.made("grey.png")
         self.assertEqual(scene["terrain"], {"kind": "image", "file": os.path.abspath("grey.png"), "width": 2.0, "low": 0, "high": 0.3})
-        self.assertEqual((made[2:], scene["tool"]["radius"]), ((200, 100, 0.01), 0.025))
+        self.assertEqual(made[2:], (200, 100, 0.01))
 
     def test_points_become_a_tin(self):
         _, scene = self.made(self.write("survey.csv", POINTS))
         self.assertEqual((scene["terrain"]["kind"], scene["tin"]), ("points", {}))
-        self.assertAlmostEqual(scene["tool"]["radius"], 1, delta=0.01)
 
     def test_a_photo_is_taken_only_if_asked_for(self):
         picture_files.write_png(picture(), "photo.png")
@@ -181,8 +176,8 @@ class Run(LauncherTest):
             ended = self.start(["-"], *options)
             self.assertEqual(ended.returncode, 0, ended.stderr)
             self.assertIn(f"--scene {self.folder}/out/made_scene.toml", ended.stdout)
-            self.assertEqual(tomllib.loads((self.folder / "out" / "made_scene.toml").read_text())["tool"], {"radius": 20})
-            self.assertIn("sandwall:     radius = 20", ended.stderr)
+            self.assertEqual(tomllib.loads((self.folder / "out" / "made_scene.toml").read_text())["terrain"]["kind"], "dem")
+            self.assertIn('sandwall:     kind = "dem"', ended.stderr)
 
     def test_printed_commands_make_the_scene(self):
         lines = self.printed(["-"], "--device", "script:gis").splitlines()
