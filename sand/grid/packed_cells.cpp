@@ -162,34 +162,16 @@ void PackedCells::putInto(CellArray& grid, int first, int end, int to) const {
     }
 }
 
-/// Returns what group and words hold of a number, without the mapping of fold().
-std::uint32_t PackedCells::bitsOf(std::size_t place) const {
-    const Group& group = groups_[place / kNumbers];
-    if (group.bits == 0) {
-        return 0;
+std::vector<std::int32_t> PackedCells::numbers() const {
+    const std::vector<std::int32_t> plain = unpacked();
+    const auto columns = static_cast<std::size_t>(cells_.x1 - cells_.x0);
+    std::vector<std::int32_t> numbers;
+    numbers.reserve(columns * static_cast<std::size_t>(cells_.y1 - cells_.y0));
+    for (int y = cells_.y0; y < cells_.y1; ++y) {
+        const std::int32_t* const row = plain.data() + across() * static_cast<std::size_t>(y - cells_.y0 + 1);
+        numbers.insert(numbers.end(), row, row + columns);
     }
-    const std::size_t lane = place % kVector, bit = place % kNumbers / kVector * group.bits, used = bit % 32;
-    const std::uint32_t* const word = words_.data() + group.words + bit / 32 * kVector + lane;
-    std::uint32_t number = word[0] >> used;
-    if (used + group.bits > 32) {
-        number |= word[kVector] << (32 - used);
-    }
-    return unfolded(group.bits == 32 ? number : number & ((1U << group.bits) - 1));
-}
-
-std::int32_t PackedCells::at(int column, int row) const {
-    const auto x = static_cast<std::size_t>(column - cells_.x0), y = static_cast<std::size_t>(row - cells_.y0);
-    std::uint32_t number = static_cast<std::uint32_t>(first_);
-    const auto pass = [&](std::size_t place) {
-        number = bitsOf(place) + (groups_[place / kNumbers].differences ? number : 0);
-    };
-    for (std::size_t i = 0; i <= x; ++i) {
-        pass(i);
-    }
-    for (std::size_t i = 1; i <= y; ++i) {
-        pass(i * across() + x);
-    }
-    return static_cast<std::int32_t>(number);
+    return numbers;
 }
 
 }  // namespace sand::grid

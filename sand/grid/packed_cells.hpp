@@ -24,8 +24,8 @@ public:
     /// Writes the numbers of rows [first, end) into `grid`, row `first` of them into its row `to`.
     void putInto(CellArray& grid, int first, int end, int to) const;
     void putInto(CellArray& grid) const { putInto(grid, cells_.y0, cells_.y1, cells_.y0); }
-    /// Returns the number of a cell. Takes time for all rows of cells() up to `row`.
-    [[nodiscard]] std::int32_t at(int column, int row) const;
+    /// Returns all numbers, row by row from the south-west.
+    [[nodiscard]] std::vector<std::int32_t> numbers() const;
     /// Returns whether both have the same cells and numbers.
     friend bool operator==(const PackedCells&, const PackedCells&) = default;
 
@@ -45,7 +45,6 @@ private:
     [[nodiscard]] std::size_t across() const;  // numbers in a row, with repeated ones
     [[nodiscard]] std::vector<std::int32_t> plainOf(const CellArray& grid) const;
     [[nodiscard]] std::vector<std::int32_t> unpacked() const;
-    [[nodiscard]] std::uint32_t bitsOf(std::size_t place) const;
 
     CellRect cells_;
     std::int32_t first_ = 0;  // number of the south-western cell

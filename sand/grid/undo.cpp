@@ -59,7 +59,16 @@ Snapshot Undo::copy(const HeightField& field) const {
 
 std::int32_t Undo::height(const HeightField& field, int column, int row) const {
     const std::shared_ptr<const PackedCells>& tile = kept_->tiles[kept_->grid.tileAt(column, row)];
-    return tile != nullptr ? tile->at(column, row) : field.height(column, row);
+    if (tile == nullptr) {
+        return field.height(column, row);
+    }
+    if (kept_->read != tile) {
+        kept_->numbers = tile->numbers();
+        kept_->read = tile;
+    }
+    const CellRect& cells = tile->cells();
+    return kept_->numbers[static_cast<std::size_t>(row - cells.y0) * static_cast<std::size_t>(cells.x1 - cells.x0) +
+                          static_cast<std::size_t>(column - cells.x0)];
 }
 
 std::vector<CellRect> Undo::changed() const {
@@ -75,6 +84,8 @@ std::vector<CellRect> Undo::changed() const {
 void Undo::putBackHeights(HeightField& field) {
     kept_->putInto(field);
     kept_->tiles.assign(kept_->tiles.size(), nullptr);
+    kept_->read = nullptr;  // gives its memory back
+    kept_->numbers = {};
 }
 
 }  // namespace sand::grid

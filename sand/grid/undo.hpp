@@ -36,7 +36,8 @@ public:
     void willChange(const HeightField& field, const CellRect& cells);
     /// Returns a copy of the kept sand. Requires any(). `field` is the current sand.
     [[nodiscard]] Snapshot copy(const HeightField& field) const;
-    /// Returns the height of a cell in the kept sand [unit]. Requires any().
+    /// Returns the height of a cell in the kept sand [unit]. Requires any(). Unpacks a tile only if the last call has
+    /// asked for another one.
     [[nodiscard]] std::int32_t height(const HeightField& field, int column, int row) const;
     /// Returns the heights of each tile of the kept sand; null for a tile whose heights are those of the field.
     /// Requires any(). The tiles never change, so they may be shared.
@@ -55,6 +56,9 @@ private:
         std::int64_t outflow;  // [unit · cell]
         TileGrid grid;
         std::vector<std::shared_ptr<const PackedCells>> tiles;
+        /// The tile that height() has unpacked last, and its numbers. A ray reads many cells of a tile, one by one.
+        mutable std::shared_ptr<const PackedCells> read{};
+        mutable std::vector<std::int32_t> numbers{};
 
         void putInto(HeightField& field) const;
     };

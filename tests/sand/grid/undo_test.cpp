@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "sand/grid/tile_hash.hpp"
 #include "sand/replica.hpp"
+#include "tests/support/machine/heap_count.hpp"
 #include "tests/support/sand/sand_of.hpp"
 #include "tests/support/sand/sand_samples.hpp"
 #include "tests/support/seed.hpp"
@@ -81,6 +83,34 @@ TEST(GridUndo, KeepsEveryCellOfARectangleThatHasChanged) {
             ASSERT_EQ(undo.height(field, column, row), before.height(column, row)) << column << ", " << row;
         }
     }
+}
+
+// A pointer reads many cells of a tile, one after another. Each tile is unpacked once, also when the kept sand changes.
+TEST(GridUndo, UnpacksATileForManyCellsOnce) {
+    std::mt19937 random(9);
+    HeightField field = samples::randomField(kColumns, kRows, 1 << 20, random);
+    sand::grid::Undo undo;
+    for (int stroke = 0; stroke < 3; ++stroke) {
+        const HeightField before = field;
+        undo.keep(field, {}, 0);
+        undo.willChange(field, field.bounds());
+        raise(field, field.bounds());
+        for (int x0 = 0; x0 < kColumns; x0 += sand::grid::Undo::kTile) {
+            const int x1 = std::min(x0 + sand::grid::Undo::kTile, kColumns);
+            ASSERT_EQ(undo.height(field, x0, 0), before.height(x0, 0));
+            const long asked = test::heapRequests();
+            bool right = true;
+            for (int row = 0; row < sand::grid::Undo::kTile; ++row) {
+                for (int column = x0; column < x1; ++column) {
+                    right = right && undo.height(field, column, row) == before.height(column, row);
+                }
+            }
+            EXPECT_TRUE(right) << stroke;
+            EXPECT_EQ(test::heapRequests(), asked) << stroke;
+        }
+    }
+    undo.putBackHeights(field);
+    ASSERT_EQ(undo.height(field, 3, 4), field.height(3, 4));
 }
 
 TEST(GridUndo, TakesOverSandThatDiffersFromTheField) {
