@@ -82,7 +82,8 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
 
 std::size_t Erosion::bytes() const {
     return east_.bytes() + north_.bytes() + written_.size() + marked_.bytes() + moved_.bytes() + flowed_.bytes() +
-           walk_.bytes() + (active_.capacity() + swept_.capacity()) * sizeof active_[0];
+           walk_.bytes() + (active_.capacity() + swept_.capacity()) * sizeof active_[0] +
+           steep_.capacity() * sizeof steep_[0];
 }
 
 Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle,

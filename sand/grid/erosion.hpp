@@ -121,7 +121,7 @@ private:
     /// Adds the marked blocks to the active ones.
     void wakeTouched();
     /// Removes active blocks that are certainly at rest, where no flux has been written. A field of which little moves
-    /// then needs little memory for fluxes, although its first sweep visits all blocks.
+    /// then needs little memory for fluxes, although its first sweep visits all blocks. Leaves swept_ in any state.
     void leaveOutResting(const HeightField& field);
     /// Notes that fluxes of the active blocks may be written.
     void noteWritten();
@@ -148,6 +148,7 @@ private:
     BlockMarks moved_;              // blocks changed since takeMoved()
     FlowBits flowed_;               // bits of this sweep; 0 between sweeps
     ErosionWalk walk_;
+    std::vector<std::uint32_t> steep_;  // memory of RestingBlocks
 };
 
 }  // namespace sand::grid

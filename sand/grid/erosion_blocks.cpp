@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Choice of the blocks that are swept.
 #include <algorithm>
-#include <utility>
 
 #include "sand/grid/erosion.hpp"
 #include "sand/grid/resting_blocks.hpp"
@@ -74,16 +73,16 @@ void Erosion::leaveOutResting(const HeightField& field) {
         std::none_of(active_.begin(), active_.end(), unwritten)) {
         return;
     }
-    RestingBlocks resting(field, rules_, blockSize_);
-    std::vector<CellRect> others;
+    RestingBlocks resting(field, rules_, blockSize_, steep_);
+    swept_.clear();  // its memory serves for the others, because the next sweep sets it
     for (const CellRect& run : active_) {
         if (unwritten(run)) {
-            resting.appendOthers(run, others);
+            resting.appendOthers(run, swept_);
         } else {
-            others.push_back(run);
+            swept_.push_back(run);
         }
     }
-    active_ = std::move(others);
+    active_.swap(swept_);
 }
 
 void Erosion::noteWritten() {

@@ -19,11 +19,10 @@ void compare(const std::int32_t* __restrict heights, const std::int32_t* __restr
 
 }  // namespace
 
-RestingBlocks::RestingBlocks(const HeightField& field, const Rules& rules, int blockSize)
-    : field_(field),
-      blockSize_(blockSize),
-      openRim_(rules.rim == Rim::open),
-      steep_(static_cast<std::size_t>(field.columns()), 0) {
+RestingBlocks::RestingBlocks(const HeightField& field, const Rules& rules, int blockSize,
+                             std::vector<std::uint32_t>& storage)
+    : field_(field), blockSize_(blockSize), openRim_(rules.rim == Rim::open), steep_(storage) {
+    steep_.resize(static_cast<std::size_t>(field.columns()));
     // A little less than 1/√2, for the rounding of the law's floats.
     const double most = 0.7 * rules.tuning.threshold;
     const auto within = [](double rise) { return static_cast<std::int32_t>(std::min(rise, 2.0 * kMaxHeight)); };

@@ -19,8 +19,9 @@ namespace sand::grid {
 /// Threads: not thread-safe.
 class RestingBlocks {
 public:
-    /// `blockSize` is the side of a block [cell].
-    RestingBlocks(const HeightField& field, const Rules& rules, int blockSize);
+    /// `blockSize` is the side of a block [cell]. `storage` is memory for the search, which the next object may use
+    /// again. Its content does not matter.
+    RestingBlocks(const HeightField& field, const Rules& rules, int blockSize, std::vector<std::uint32_t>& storage);
 
     /// Appends the parts of a run that are not certainly at rest. `run` is a run of blocks within one row [block]; so
     /// are the parts, which do not touch each other. Blocks at an open rim are never at rest. The field has no rock and
@@ -35,7 +36,7 @@ private:
     int blockSize_;
     bool openRim_;
     std::int32_t mostEast_, mostNorth_;  // allowed differences [unit]
-    std::vector<std::uint32_t> steep_;   // of each column: not 0 if a cell of the current row of blocks is steep
+    std::vector<std::uint32_t>& steep_;  // of each column: not 0 if a cell of the current row of blocks is steep
 };
 
 }  // namespace sand::grid

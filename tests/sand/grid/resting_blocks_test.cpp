@@ -7,6 +7,7 @@
 #include <random>
 
 #include "sand/grid/erosion.hpp"
+#include "tests/support/machine/heap_count.hpp"
 #include "tests/support/sand/relaxing.hpp"
 
 namespace {
@@ -154,6 +155,20 @@ TEST_F(RestingBlocks, MayBeAllBlocks) {
     EXPECT_TRUE(erosion.sweep(field, sand::SweepPart::all(3)).still);
     EXPECT_TRUE(erosion.settled());
     EXPECT_EQ(erosion.sweepsDone(), 1) << "as without the search";
+}
+
+TEST_F(RestingBlocks, AreFoundWithoutNewMemoryAfterTheFirstSweep) {
+    const sand::Rules rules = samples::rulesFor(HeightField(300, 200, 1.0));
+    HeightField field(300, 200, 1.0);
+    Erosion erosion(field, rules);
+    erosion.sweep(field, 1);
+    for (int n = 0; n < 3; ++n) {
+        erosion.wakeAll();
+        const long asked = test::heapRequests();
+        EXPECT_TRUE(erosion.sweep(field, sand::SweepPart::all(1)).still);
+        EXPECT_EQ(test::heapRequests(), asked) << n;
+    }
+    EXPECT_GT(test::heapRequests(), 0) << "nobody counted";
 }
 
 }  // namespace
