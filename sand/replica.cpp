@@ -361,7 +361,7 @@ base::Bytes StateCopy::encode(const std::function<void()>& between) const {
     return writer.take();
 }
 
-void Replica::decodeState(std::span<const std::uint8_t> bytes) {
+void Replica::decodeState(std::span<const std::uint8_t> bytes, const std::function<void(std::size_t)>& decoded) {
     (void)base::needDefaultFloats();
     base::ByteReader reader(bytes);
     const auto head = base::read<StateHead>(reader);
@@ -369,7 +369,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     const std::size_t tiles = grid ? static_cast<std::size_t>(hashTiles().tileCount()) : 0;
     const Movement movement = Movement::decode(reader.getBlock(), head.number, tiles);
     const auto beforeStroke = reader.getBlock();
-    const SurfaceReader read = surface_->reader();
+    const SurfaceReader read = surface_->readerThatCalls(decoded);
     // Decode the kept sand now, because at the undo it would be too late to refuse it.
     const auto stroke = beforeStroke.empty() ? nullptr : read(beforeStroke);
     const auto sand = read(reader.rest());

@@ -62,6 +62,10 @@ struct StateCopy {
     void encodeInto(base::ByteWriter& writer, const std::function<void()>& between = {}) const;
     /// Returns what encodeInto() writes.
     [[nodiscard]] base::Bytes encode(const std::function<void()>& between = {}) const;
+    /// Returns how often encodeInto() calls `between`. Requires complete().
+    [[nodiscard]] std::size_t stripes() const {
+        return sand->stripes() + (beforeStroke == nullptr ? 0 : beforeStroke->stripes());
+    }
     /// Returns whether the copy has all sand. Call it in the thread of the replica.
     [[nodiscard]] bool complete() const {
         return sand->complete() && (beforeStroke == nullptr || beforeStroke->complete());
@@ -200,7 +204,9 @@ public:
     /// Replaces the whole state by what encodeState() wrote. Throws base::FormatError if the bytes are not a state of
     /// kStateVersion for this field; the replica is then unchanged. The memory that it allocates is bounded by the
     /// scene and by the length of the bytes. After std::bad_alloc, call decodeState() again before other functions.
-    void decodeState(std::span<const std::uint8_t> bytes);
+    /// Calls `decoded` again and again, unless it is empty, with the number of bytes that it has decoded since the last
+    /// call: about all of them together. A state of a TIN is decoded without a call.
+    void decodeState(std::span<const std::uint8_t> bytes, const std::function<void(std::size_t)>& decoded = {});
 
     /// Flips bit `bit` (0 is the lowest) of one cell's height, or of the volume of a TIN's vertex in that cell's
     /// triangle. The hash is not updated. Tests and drills inject this fault to prove that a divergence is found.

@@ -72,13 +72,14 @@ void Start::encodeSand(base::ByteWriter& writer) const {
     }
 }
 
-void Start::decodeSand(base::ByteReader& reader, double cellSize, Keep keep) {
+void Start::decodeSand(base::ByteReader& reader, double cellSize, Keep keep,
+                       const std::function<void(std::size_t)>& decoded) {
     const bool grid = rules.tin == 0;
     const int columns = grid ? rules.columns : 1, rows = grid ? rules.rows : 1;
     requireCells(reader, static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     terrain = HeightField(columns, rows, cellSize);
     const std::span<const std::uint8_t> before = reader.rest();
-    decodeCells(reader, terrain.bounds(), kMaxHeight, terrain.cells());
+    decodeCells(reader, terrain.bounds(), kMaxHeight, terrain.cells(), decoded);
     const auto cells = before.first(before.size() - reader.rest().size());
     packed = keep == Keep::packedToo ? std::make_shared<const base::Bytes>(cells.begin(), cells.end()) : nullptr;
     if (!grid) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -66,8 +67,10 @@ struct Start {
     void encodeSand(base::ByteWriter& writer) const;
     enum class Keep : bool { heights, packedToo };
     /// Reads what encodeSand() wrote, and sets `packed` if `keep` says so. `rules` must have been read. Throws
-    /// base::FormatError for bytes that are not the sand of these rules.
-    void decodeSand(base::ByteReader& reader, double cellSize /* [scene unit] */, Keep keep);
+    /// base::FormatError for bytes that are not the sand of these rules. Calls `decoded` for the heights as
+    /// decodeCells() does.
+    void decodeSand(base::ByteReader& reader, double cellSize /* [scene unit] */, Keep keep,
+                    const std::function<void(std::size_t)>& decoded = {});
 
     /// Frees the heights, because all replicas have been made. Only rules, cell size, TIN and ground stay. For a TIN,
     /// changes nothing.

@@ -110,15 +110,20 @@ void Inertia::encode(int columns, int rows, base::ByteWriter& writer, const std:
     }
 }
 
-Inertia Inertia::decode(base::ByteReader& reader, const FieldFaces& faces) {
+std::size_t Inertia::stripes(int columns, int rows) const {
+    return pieces_.empty() ? 0 : 2 * stripesOf(withRim(columns, rows));
+}
+
+Inertia Inertia::decode(base::ByteReader& reader, const FieldFaces& faces,
+                        const std::function<void(std::size_t)>& decoded) {
     const auto head = base::read<Head>(reader);
     Inertia inertia(head.undisturbed);
     if (head.flows) {
         CellArray east(faces.columns, faces.rows);
         CellArray north(faces.columns, faces.rows);
         const CellRect all = withRim(faces.columns, faces.rows);
-        decodeCells(reader, all, kMaxHeight, east);
-        decodeCells(reader, all, kMaxHeight, north);
+        decodeCells(reader, all, kMaxHeight, east, decoded);
+        decodeCells(reader, all, kMaxHeight, north, decoded);
         requirePossible(east, north, faces);
         for (int y = all.y0; y < all.y1; y += kPiece) {
             for (int x = all.x0; x < all.x1; x += kPiece) {

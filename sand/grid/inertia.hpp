@@ -2,6 +2,7 @@
 // Private to this folder.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -53,10 +54,13 @@ public:
     /// Writes the fluxes as two whole grids of a field of this size. The division into pieces makes no difference.
     /// Needs memory for a few rows of them. Calls `between` as encodeCells() does.
     void encode(int columns, int rows, base::ByteWriter& writer, const std::function<void()>& between = {}) const;
+    /// Returns how often encode() calls `between`.
+    [[nodiscard]] std::size_t stripes(int columns, int rows) const;
     /// Reads what encode() wrote. Throws base::FormatError for invalid bytes, and for a flux that no sweep of these
     /// faces makes. A sweep takes the fluxes of closed rims from memory, where they are 0, and never computes them.
-    /// Another number would change the volume in each sweep.
-    static Inertia decode(base::ByteReader& reader, const FieldFaces& faces);
+    /// Another number would change the volume in each sweep. Calls `decoded` as decodeCells() does.
+    static Inertia decode(base::ByteReader& reader, const FieldFaces& faces,
+                          const std::function<void(std::size_t)>& decoded = {});
 
 private:
     struct Piece {

@@ -39,16 +39,21 @@ void Snapshot::encodeInto(base::ByteWriter& writer, const std::function<void()>&
     inertia.encode(field.columns(), field.rows(), writer, between);
 }
 
-Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, const SandLimits& limits) {
+std::size_t Snapshot::stripes() const {
+    return stripesOf(field.bounds()) + inertia.stripes(field.columns(), field.rows());
+}
+
+Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, const SandLimits& limits,
+                          const std::function<void(std::size_t)>& decoded) {
     base::ByteReader reader(bytes);
     const auto outflow = reader.get<std::int64_t>();
     Snapshot copy(HeightField(limits.faces.columns, limits.faces.rows, limits.cellSize), {}, outflow);
-    decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells());
+    decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells(), decoded);
     requirePossible(copy);
     if (limits.ground != nullptr) {
         requireAbove(*limits.ground, copy.field);
     }
-    copy.inertia = Inertia::decode(reader, limits.faces);
+    copy.inertia = Inertia::decode(reader, limits.faces, decoded);
     if (!reader.atEnd()) {
         throw base::FormatError("sand with further bytes behind it");
     }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -26,10 +28,13 @@ public:
         : field(std::move(heights)), inertia(std::move(fluxes)), outflow(over) {}
 
     void encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const override;
+    [[nodiscard]] std::size_t stripes() const override;
     /// Reads what encodeInto() wrote for a field with these limits. Throws base::FormatError for invalid bytes, for
     /// sand below rock, for fluxes that Inertia::decode() refuses, and if further bytes follow. Volume and outflow
-    /// together must be within ±kMaxHeight times the number of cells; steps keep that sum.
-    static Snapshot decode(std::span<const std::uint8_t> bytes, const SandLimits& limits);
+    /// together must be within ±kMaxHeight times the number of cells; steps keep that sum. Calls `decoded` as
+    /// decodeCells() does.
+    static Snapshot decode(std::span<const std::uint8_t> bytes, const SandLimits& limits,
+                           const std::function<void(std::size_t)>& decoded = {});
 
     HeightField field;
     Inertia inertia;

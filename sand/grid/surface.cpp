@@ -203,11 +203,11 @@ bool GridSurface::continueCopy(std::int64_t cells) const {
     return true;
 }
 
-SurfaceReader GridSurface::reader() const {
+SurfaceReader GridSurface::readerThatCalls(std::function<void(std::size_t)> decoded) const {
     const FieldFaces faces{field_.columns(), field_.rows(), rules_.rim, rules_.aspect};
-    return [faces, cellSize = field_.cellSize(),
-            ground = ground_](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, {faces, cellSize, ground.get()}));
+    return [faces, cellSize = field_.cellSize(), ground = ground_,
+            decoded = std::move(decoded)](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
+        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, {faces, cellSize, ground.get()}, decoded));
     };
 }
 

@@ -48,7 +48,7 @@ public:
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
     [[nodiscard]] Copies beginCopy() const override;
     bool continueCopy(std::int64_t cells) const override;
-    [[nodiscard]] SurfaceReader reader() const override;
+    [[nodiscard]] SurfaceReader readerThatCalls(std::function<void(std::size_t)> decoded) const override;
     void replace(const SurfaceCopy& copy) override;
 
     [[nodiscard]] std::int64_t outflow() const override { return outflow_; }        // [unit · cell]

@@ -30,6 +30,10 @@ void encodeTiles(const TileGrid& grid, const HeightsOf& heightsOf, std::int64_t 
     inertia.encode(field.x1, field.y1, writer, between);
 }
 
+std::size_t stripesOfTiles(const TileGrid& grid, const Inertia& inertia) {
+    return stripesOf(grid.field()) + inertia.stripes(grid.field().x1, grid.field().y1);
+}
+
 }  // namespace
 
 TileCopy::TileCopy(const HeightField& field, const Erosion& erosion, std::int64_t outflow)
@@ -74,6 +78,8 @@ void TileCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>&
         between);
 }
 
+std::size_t TileCopy::stripes() const { return stripesOfTiles(grid_, inertia_); }
+
 KeptCopy::KeptCopy(const Undo& undo, std::shared_ptr<const TileCopy> now)
     : heights_(undo.tiles()), inertia_(undo.inertia()), outflow_(undo.outflow()), now_(std::move(now)) {}
 
@@ -83,5 +89,7 @@ void KeptCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>&
     };
     encodeTiles(now_->grid(), heightsOf, outflow_, inertia_, writer, between);
 }
+
+std::size_t KeptCopy::stripes() const { return stripesOfTiles(now_->grid(), inertia_); }
 
 }  // namespace sand::grid

@@ -35,6 +35,7 @@ public:
     [[nodiscard]] bool complete() const override { return left_ == 0; }
 
     void encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const override;
+    [[nodiscard]] std::size_t stripes() const override;
     [[nodiscard]] const TileGrid& grid() const { return grid_; }
     /// Returns the heights of a tile. Requires complete().
     [[nodiscard]] const PackedCells& heights(std::size_t tile) const { return *heights_[tile]; }
@@ -57,6 +58,7 @@ public:
     KeptCopy(const Undo& undo, std::shared_ptr<const TileCopy> now);
     [[nodiscard]] bool complete() const override { return now_->complete(); }
     void encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const override;
+    [[nodiscard]] std::size_t stripes() const override;
 
 private:
     std::vector<std::shared_ptr<const PackedCells>> heights_;  // of each tile; null: those of now_

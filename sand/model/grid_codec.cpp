@@ -8,6 +8,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sand {
@@ -48,6 +49,8 @@ public:
             step(out);
         }
     }
+    /// Returns the number of packed bytes that were read.
+    [[nodiscard]] std::size_t bytes() const { return in_.pos; }
     /// Throws unless the last frame ends here.
     void finish() {
         std::uint8_t further = 0;
@@ -123,15 +126,28 @@ void requireCells(base::ByteReader reader, std::size_t cells) {
     }
 }
 
-void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid) {
+std::size_t stripesOf(const CellRect& cells) {
+    const auto across = static_cast<std::size_t>(cells.x1 - cells.x0);
+    const std::size_t rows = static_cast<std::size_t>(cells.y1 - cells.y0),
+                      each = std::max<std::size_t>(kStripe / across, 1);
+    return (rows + each - 1) / each;
+}
+
+void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid,
+                 const std::function<void(std::size_t)>& decoded) {
     requireCells(reader, countOf(cells));
     Unpacker unpacker(reader.getBlock());
     const int across = cells.x1 - cells.x0;
+    const int rows = static_cast<int>(std::max<std::size_t>(kStripe / static_cast<std::size_t>(across), 1));
+    std::size_t noted = 0;  // packed bytes that `decoded` knows
     for (int y = cells.y0; y < cells.y1; ++y) {
         std::int32_t* const row = grid.row(y) + cells.x0;
         unpacker.read(row, static_cast<std::size_t>(across));
         if (std::any_of(row, row + across, [most](std::int32_t n) { return n > most || n < -most; })) {
             throw base::FormatError("a number out of range in a grid");
+        }
+        if (decoded && (y + 1 == cells.y1 || (y + 1 - cells.y0) % rows == 0)) {
+            decoded(unpacker.bytes() - std::exchange(noted, unpacker.bytes()));
         }
     }
     unpacker.finish();

@@ -38,7 +38,12 @@ void requireCells(base::ByteReader reader, std::size_t cells);
 
 /// Reads what encodeCells() wrote for the same `cells` of a grid of the same size. Throws base::FormatError for other
 /// bytes, or if a number is beyond ±`most`; `cells` then have unspecified numbers. Also reads one frame of all rows, as
-/// earlier builds wrote it.
-void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid);
+/// earlier builds wrote it. Calls `decoded` after each stripe, unless it is empty, with the number of packed bytes that
+/// were unpacked since the last call.
+void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid,
+                 const std::function<void(std::size_t)>& decoded = {});
+
+/// Returns the number of stripes of encodeCells().
+[[nodiscard]] std::size_t stripesOf(const CellRect& cells);
 
 }  // namespace sand

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -57,6 +58,8 @@ public:
         encodeInto(writer, between);
         return writer.take();
     }
+    /// Returns how often encodeInto() calls `between`. Requires complete().
+    [[nodiscard]] virtual std::size_t stripes() const { return 1; }
     /// Returns whether the snapshot has all of its sand. Surface::beginCopy() begins one that gets it later. Call it
     /// in the thread of the surface.
     [[nodiscard]] virtual bool complete() const { return true; }
@@ -157,7 +160,10 @@ public:
     /// false if they are complete, or if there are none.
     virtual bool continueCopy(std::int64_t /* cells */) const { return false; }
     /// Returns the function that decodes snapshots for this surface.
-    [[nodiscard]] virtual SurfaceReader reader() const = 0;
+    [[nodiscard]] SurfaceReader reader() const { return readerThatCalls({}); }
+    /// Returns a reader that calls `decoded` again and again, unless it is empty, with the number of bytes that it has
+    /// decoded since the last call. A TIN's never calls it, because a TIN is small.
+    [[nodiscard]] virtual SurfaceReader readerThatCalls(std::function<void(std::size_t)> decoded) const = 0;
     /// Replaces the sand by `copy`, which must come from copy(), kept() or a SurfaceReader of this surface.
     virtual void replace(const SurfaceCopy& copy) = 0;
 

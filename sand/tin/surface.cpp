@@ -238,7 +238,7 @@ void TinSurface::keep(const SurfaceCopy& copy) {
 
 std::shared_ptr<const SurfaceCopy> TinSurface::copy() const { return std::make_shared<const Snapshot>(layer_, state_); }
 
-SurfaceReader TinSurface::reader() const {
+SurfaceReader TinSurface::readerThatCalls(std::function<void(std::size_t)> /* decoded */) const {
     return [limits = limits()](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
         return std::make_shared<const Snapshot>(bytes, limits);
     };

@@ -52,7 +52,7 @@ public:
     void putBackKept() override { replace(*beforeStroke_.copy()); }
 
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
-    [[nodiscard]] SurfaceReader reader() const override;
+    [[nodiscard]] SurfaceReader readerThatCalls(std::function<void(std::size_t)> decoded) const override;
     void replace(const SurfaceCopy& copy) override;
 
     [[nodiscard]] std::int64_t outflow() const override { return state_.outflow; }

@@ -68,9 +68,10 @@ struct Sand {
     AnyScene& scene;
     double cellSize;  // [scene unit]
     sand::Start::Keep keep;
+    const std::function<void(std::size_t)>& decoded;
     void put(base::ByteWriter& writer) const { scene.encodeSand(writer); }
     void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyScene>) {
-        scene.decodeSand(reader, cellSize, keep);
+        scene.decodeSand(reader, cellSize, keep, decoded);
     }
 };
 
@@ -91,6 +92,7 @@ struct Whole {
     AnyScene& scene;
     bool withStatements = true;
     sand::Start::Keep keep = sand::Start::Keep::heights;
+    std::function<void(std::size_t)> decoded{};
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         AnyScene& scene = it.scene;
@@ -98,7 +100,7 @@ struct Whole {
         double cellSize = scene.terrain.cellSize();
         visit("cell_size",
               base::limited(cellSize, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()));
-        visit("sand", Sand<AnyScene>{scene, cellSize, it.keep});
+        visit("sand", Sand<AnyScene>{scene, cellSize, it.keep, it.decoded});
         Look::fields(scene.look, visit);
         sand::ForceConstants::fields(scene.force, visit);
         visit("parts", Parts<AnyScene>{scene, it.withStatements});
@@ -128,10 +130,10 @@ sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
     return base::read<Head>(reader).rules;
 }
 
-Scene Scene::decode(std::span<const std::uint8_t> bytes, Keep keep) {
+Scene Scene::decode(std::span<const std::uint8_t> bytes, Keep keep, const std::function<void(std::size_t)>& decoded) {
     base::ByteReader reader(bytes);
     Scene scene;
-    base::getMember(reader, Whole<Scene>{scene, true, keep});
+    base::getMember(reader, Whole<Scene>{scene, true, keep, decoded});
     return scene;
 }
 

@@ -60,8 +60,10 @@ struct Scene : sand::Start {
     /// Returns whether `bytes` are this scene. The statements do not count, because the same scene may be read by
     /// another path, and journals of earlier builds have none.
     [[nodiscard]] bool isEncodedAs(std::span<const std::uint8_t> bytes) const;
-    /// Reads what encode() wrote, except warnings and material. Throws base::FormatError for invalid bytes.
-    static Scene decode(std::span<const std::uint8_t> bytes, Keep keep = Keep::heights);
+    /// Reads what encode() wrote, except warnings and material. Throws base::FormatError for invalid bytes. Calls
+    /// `decoded` as decodeSand() does.
+    static Scene decode(std::span<const std::uint8_t> bytes, Keep keep = Keep::heights,
+                        const std::function<void(std::size_t)>& decoded = {});
     /// Decodes only the rules, which give the size of the rest. Throws base::FormatError.
     static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);
 };
