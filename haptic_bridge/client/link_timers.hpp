@@ -12,6 +12,7 @@
 
 #include "haptic_bridge/client/client.hpp"
 #include "haptic_bridge/client/clock_offset.hpp"
+#include "haptic_bridge/link/silence.hpp"
 
 /// Timers of the master's end of a link. Each belongs to the network thread.
 namespace haptic_bridge {
@@ -54,7 +55,7 @@ class SilenceWatch {
 public:
     SilenceWatch(boost::asio::io_context& io, LinkClock clock) : timer_(io), now_(std::move(clock)) {}
 
-    void heard() { heardNs_ = now_(); }
+    void heard() { silence_.heard(now_()); }
     /// Sets after how long the server counts as silent; kSilenceNs from the start on.
     void setMost(std::int64_t most /* [ns] */) { most_ = most; }
     [[nodiscard]] std::int64_t most() const { return most_; }
@@ -81,8 +82,10 @@ private:
                 return;
             }
             const std::int64_t now = now_();
-            heardNs_ = excused_() ? now : heardNs_;
-            if (now - heardNs_ > most_) {
+            if (excused_()) {
+                silence_.heard(now);
+            }
+            if (silence_.lengthNs(now) > most_) {
                 silent_();
             } else {
                 look();
@@ -92,7 +95,7 @@ private:
 
     boost::asio::steady_timer timer_;
     LinkClock now_;
-    std::int64_t heardNs_ = 0;  // [ns], on now_
+    Silence silence_;  // on now_
     std::int64_t most_ = kSilenceNs;
     std::function<bool()> excused_;
     std::function<void()> silent_;

@@ -16,6 +16,7 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/link/connection.hpp"
 #include "haptic_bridge/link/link_options.hpp"
+#include "haptic_bridge/link/silence.hpp"
 #include "host/clock.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
@@ -73,7 +74,7 @@ private:
     }
 
     void receive(const Message& message) {
-        heardNs_ = host::monotonicNs();
+        silence_.heard(host::monotonicNs());
         if (const auto* loading = std::get_if<Loading>(&message); loading != nullptr && !welcomed_) {
             wait(*loading);
             return;
@@ -125,7 +126,7 @@ private:
             if (error) {
                 return;
             }
-            if (host::monotonicNs() - heardNs_ > kSilenceNs) {
+            if (silence_.lengthNs(host::monotonicNs()) > kSilenceNs) {
                 end(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
                 return;
             }
@@ -160,7 +161,7 @@ private:
     std::uint64_t linesLeft_, steps_ = 0, bytes_ = 0, hash_ = 0;
     sand::Step last_;
     sand::ProbePoint probe_;
-    std::int64_t heardNs_ = host::monotonicNs();
+    Silence silence_{host::monotonicNs()};
     bool welcomed_ = false, loading_ = false, readsScene_ = false;
     std::optional<std::string> ended_;
 };
