@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks, before a session starts, that each of its hosts has the memory for the processes that it gets (docs/scenes.md)."""
 
-import collections
 import pathlib
 import re
 import resource
@@ -64,25 +63,43 @@ def in_words(number):
     return f"{number / 2 ** 20:.0f} MiB" if number < 2 ** 30 else f"{number / 2 ** 30:.1f} GiB"
 
 
-def require(scene, needs, names, free):
-    """Throws BadInput if a process has a limit below its need, or a host lacks the memory for all of its processes.
+def require(scene, needs, names, free, identities):
+    """Throws BadInput if a process has a limit below its need, or a machine lacks the memory for all of its processes.
 
-    `names` has the host of every render rank. `free` is {host: free memory}; a host that is not in it is not checked. The
-    haptic server and the master run on this machine.
+    `names` has the host of every render rank. `free` is {host: free memory}; a host that is not in it is not checked.
+    `identities` are those of SessionHosts. The haptic server and the master run on this machine.
     """
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     largest = max(needs.values(), key=lambda need: need.most, default=None)
     if largest and limit != resource.RLIM_INFINITY and largest.most > limit:
         raise BadInput(f"{scene}: needs {in_words(largest.most)} in the {PROCESS[largest.kind]}, and ulimit -v allows {in_words(limit)}; "
                        "raise the limit, or use fewer cells")
-    on = collections.defaultdict(list)
-    for who, need in needs.items():
-        on[names[who - 1] if need.kind == "rank" and who <= len(names) else HERE].append(need)
-    for host, processes in on.items():
-        needed, there = total(processes), free.get(host)
+    if complaint := lack_of(needs, names, free, identities):
+        raise BadInput(f"{scene}: {complaint}; {ADVICE}")
+
+
+def lack_of(needs, names, free, identities, only=None):
+    """Returns a text about the first machine that lacks the memory for its processes, or None. Looks at the machine of the host `only` alone, if given."""
+    for hosts, processes in processes_of_machines(needs, names, identities):
+        if only is not None and only not in hosts:
+            continue
+        needed, there = total(processes), min((free[host] for host in hosts if host in free and free[host] is not None), default=None)
         if there is not None and needed > there:
-            name = "this machine" if host == HERE else host
-            raise BadInput(f"{scene}: needs {in_words(needed)} on {name} for {listed(processes)}, where {in_words(there)} are free; {ADVICE}")
+            name = "this machine" if HERE in hosts else hosts[0]
+            return f"needs {in_words(needed)} on {name} for {listed(processes)}, where {in_words(there)} are free"
+    return None
+
+
+def processes_of_machines(needs, names, identities):
+    """Returns (names, Needs) of each machine. Two names of one machine have the same identity in {host: identity}."""
+    found = {}
+    for who, need in needs.items():
+        host = names[who - 1] if need.kind == "rank" and who <= len(names) else HERE
+        hosts, processes = found.setdefault(identities.get(host) or host, ([], []))
+        if host not in hosts:
+            hosts.append(host)
+        processes.append(need)
+    return list(found.values())
 
 
 def total(processes):

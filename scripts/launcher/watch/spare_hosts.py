@@ -6,7 +6,7 @@ import socket
 
 from base import events
 from base.bad_input import BadInput, NotYet
-from hosts import reachable
+from hosts import reachable, session_memory
 from job import rank_hosts
 from watch.patience import Stopped
 
@@ -18,10 +18,11 @@ class SessionHosts:
 
     `names` has the host of every render rank in their order. `spares` has (host, slots) in the order of use. `version` is that
     of this machine's mpirun, which every host must have. stopped() ends the wait for answers.
+    `needs` has the memory of each process, as session_memory.needs_of() returns it.
     """
 
-    def __init__(self, names, spares, node, version, stopped=lambda: False):
-        self.stopped = stopped
+    def __init__(self, names, spares, node, version, stopped=lambda: False, needs=None):
+        self.stopped, self.needs = stopped, needs or {}
         self.names, self.spares, self.node, self.version = list(names), list(spares), node, version
         self.identities = {}  # of every host that has answered, as reachable.py reads them
         self.free = {}  # free memory of every other host that has answered, then [byte]
@@ -53,6 +54,11 @@ class SessionHosts:
         for host, complaint in complaints.items():
             if host in self.names and not self.replace(host, complaint, print_line):
                 raise NotYet(complaint) if host in answers.absent else BadInput(complaint)
+
+    def require_memory(self, scene):
+        """Throws BadInput if a machine lacks the memory for its processes. `scene` names what needs it."""
+        free = {**self.free, rank_hosts.HERE: session_memory.free_here()}
+        session_memory.require(scene, self.needs, self.names, free, self.identities)
 
     def ask(self, hosts, print_line):
         """Returns the reachable.Answers of the hosts. Notes which machines they are. Names each host that is silent, once."""
@@ -94,7 +100,11 @@ class SessionHosts:
             if self.ask([spare], print_line).complaints:
                 print_line(f"spare {spare} cannot be reached either")
                 continue
-            self.names = [spare if name == host else name for name in self.names]
+            names = [spare if name == host else name for name in self.names]
+            if lack := session_memory.lack_of(self.needs, names, self.free, self.identities, spare):
+                print_line(f"spare {spare} cannot take the place of {host}: {lack}")
+                continue
+            self.names = names
             listed = ", ".join(str(rank) for rank in ranks)
             print_line(f"{why}; spare {spare} takes its place (rank{'s' if len(ranks) > 1 else ''} {listed})")
             events.emit("spare", host=host, spare=spare, ranks=ranks)

@@ -27,9 +27,9 @@ class Needs(unittest.TestCase):
     def setUp(self):
         self.needs = session_memory.needs_of(LINES)
 
-    def refusal(self, names, free):
+    def refusal(self, names, free, **identities):
         try:
-            session_memory.require("s.toml", self.needs, names, free)
+            session_memory.require("s.toml", self.needs, names, free, identities)
         except BadInput as complaint:
             return str(complaint)
         return ""
@@ -50,6 +50,18 @@ class Needs(unittest.TestCase):
         self.assertTrue(self.refusal([HERE, "n1"], {HERE: 180 * MIB, "n1": 59 * MIB}).startswith(
             "s.toml: needs 60 MiB on n1 for 1 rank, where 59 MiB are free; "))
         self.assertEqual(self.refusal([HERE, "n1"], {HERE: 180 * MIB}), "", "a host whose memory is not known")
+
+    def test_two_names_of_one_machine_share_its_memory(self):
+        free = {HERE: 180 * MIB, "n1": 60 * MIB, "n2": 60 * MIB}
+        self.assertEqual(self.refusal(["n1", "n2"], free, n1="a/1", n2="a/2"), "")
+        self.assertTrue(self.refusal(["n1", "n2"], free, n1="a/1", n2="a/1").startswith(
+            "s.toml: needs 100 MiB on n1 for 2 ranks, where 60 MiB are free; "))
+        self.assertEqual(self.refusal(["n1", "n2"], {**free, "n1": 100 * MIB, "n2": 100 * MIB}, n1="a/1", n2="a/1"), "")
+        self.assertTrue(self.refusal([HERE, "me"], {HERE: 219 * MIB, "me": 230 * MIB}, me="a/1", **{HERE: "a/1"}).startswith(
+            "s.toml: needs 220 MiB on this machine for the haptic server, the master and 2 ranks, where 219 MiB are free; "))
+
+    def test_a_host_that_has_not_told_what_it_is_counts_by_its_name(self):
+        self.assertEqual(self.refusal(["n1", "n2"], {"n1": 60 * MIB, "n2": 60 * MIB}, n1="", n2=""), "")
 
     def test_a_limit_of_the_process_counts(self):
         with mock.patch.object(resource, "getrlimit", return_value=(89 * MIB, 89 * MIB)):

@@ -6,9 +6,12 @@ import pathlib
 import re
 import sys
 import unittest
+from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 from supervisor_fixture import Supervised
+from hosts import reachable, session_memory
+from watch.spare_hosts import SessionHosts
 
 
 class Spares(Supervised):
@@ -61,6 +64,23 @@ class Spares(Supervised):
     def test_spares_draw_nothing_while_all_is_well(self):
         self.assertEqual(self.printed(["-"] * 2, *self.hosts("node1 spare", "node2 slots=2")),
                          self.printed(["-"] * 2, *self.hosts("node2 slots=2")))
+
+
+class SparesWithTooLittleMemory(unittest.TestCase):
+    """Spares that answer, and have less or more memory than a rank needs."""
+
+    def test_are_passed_over(self):
+        needs = session_memory.needs_of("master 1 1 1 0\n1 50 60 70 0\n2 50 60 70 0\n")
+        hosts = SessionHosts(["n1", "n2"], [("small", 1), ("same", 1), ("large", 1)], "node", "4.1.4", needs=needs)
+        hosts.identities = {"n1": "a/1", "n2": "b/2", "small": "c/3", "same": "a/1", "large": "d/4"}
+        hosts.free = {"n1": 139, "n2": 70, "small": 69, "same": 139, "large": 70}
+        lines = []
+        with mock.patch.object(hosts, "ask", return_value=reachable.Answers()):
+            self.assertTrue(hosts.replace("n2", "n2 is gone", lines.append))
+        self.assertEqual(hosts.names, ["n1", "large"])
+        self.assertEqual(lines, ["spare small cannot take the place of n2: needs 0 MiB on small for 1 rank, where 0 MiB are free",
+                                 "spare same cannot take the place of n2: needs 0 MiB on n1 for 2 ranks, where 0 MiB are free",
+                                 "n2 is gone; spare large takes its place (rank 2)"])
 
 
 if __name__ == "__main__":
