@@ -23,7 +23,7 @@ from base import events, layout
 from base.command_line import Parser, above, at_least
 from base.process_marks import marked
 from job import open_mpi, processes
-from sessions.start_cost import make_scene
+from sessions.raster_session import make_scene
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE = 180  # [s], for a start on a busy machine

@@ -11,7 +11,6 @@ usage: scripts/figures/sessions/memory_figures.py [--sides 2048 4096] [--kinds m
 
 import argparse
 import array
-import os
 import pathlib
 import random
 import subprocess
@@ -21,16 +20,17 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
-from base import events, layout
+from base import layout
 from base.command_line import at_least
-from sessions import measured_session, start_cost
-from sessions.measured_session import Failed, Parser, die_with_parent, processor
+from sessions import raster_session
+from sessions.measured_session import Failed, Parser
+from sessions.raster_session import RasterSession, print_table
 from hosts import session_memory
 
 KINDS = ("moving", "smooth", "rough")
 STROKES = "speed 0.05\ndepth 0.5\n" + "stroke\npoint -0.3 0\npoint -0.2 0.2\n" * 12  # a later stroke begins while all sand moves
 NAMES = {"sandwall-haptic-server": "haptic server", "sandwall-master": "master", "sandwall-render-node": "rank"}
-FLOAT_HEADER = start_cost.HEADER.replace("NBITS 16\nPIXELTYPE SIGNEDINT", "NBITS 32\nPIXELTYPE FLOAT").replace("XDIM 30\nYDIM 30", "XDIM 1\nYDIM 1")
+FLOAT_HEADER = raster_session.HEADER.replace("NBITS 16\nPIXELTYPE SIGNEDINT", "NBITS 32\nPIXELTYPE FLOAT").replace("XDIM 30\nYDIM 30", "XDIM 1\nYDIM 1")
 
 
 def make_moving(folder, side):
@@ -40,30 +40,19 @@ def make_moving(folder, side):
         for _ in range(side):
             array.array("f", (noise.uniform(-1500, 1500) for _ in range(side))).tofile(file)
     (folder / "start.hdr").write_text(FLOAT_HEADER.format(order="I" if sys.byteorder == "little" else "M", side=side))
-    (folder / "start.toml").write_text(start_cost.SCENE.replace("datum = 400", "datum = 0").replace("radius = 400", "radius = 13"))
+    (folder / "start.toml").write_text(raster_session.SCENE.replace("datum = 400", "datum = 0").replace("radius = 400", "radius = 13"))
     (folder / "once.strokes").write_text(STROKES)
     return folder / "start.toml"
 
 
 def measure(scene, out, args, checkpoint):
     """Returns the memory of each process at the end, and the largest during the session: {program: (now, peak)} [byte]."""
-    log = out.with_suffix(".log")
-    command = [measured_session.ROOT / "scripts" / "sandwall", "run", "--here", "--wall", args.wall, "--scene", scene, "--device",
-               f"script:{scene.parent / 'once.strokes'}", "--no-pictures", "--gl", layout.in_memory(), "--out", out, "--checkpoint", checkpoint]
-    with log.open("w") as said:
-        run = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, text=True,
-                               env=dict(os.environ, **{events.VARIABLE: "1"}), preexec_fn=die_with_parent)
-    try:
-        if events.wait_for(log, "link", start_cost.LONGEST_START, lambda: run.poll() is None, state="linked") is None:
-            raise Failed(f"no linked hand: {log.read_text(errors='replace').strip()[-300:]}")
+    with RasterSession(scene, out, args.wall, "--checkpoint", checkpoint) as session:
+        session.wait_for("link", state="linked")
         time.sleep(args.seconds)
-        memory = start_cost.memory_of(run.pid)
-        run.communicate("stop\n", timeout=start_cost.LONGEST_START)
+        memory = session.memory()
+        session.stop()
         return memory
-    finally:
-        if run.poll() is None:
-            run.terminate()
-            run.wait(timeout=start_cost.LONGEST_START)
 
 
 def stated(scene, args):
@@ -77,7 +66,7 @@ def rows_of(kind, side, args):
     """Returns the rows of a session on a field of this kind."""
     with tempfile.TemporaryDirectory(prefix="sandwall-memory-") as name:
         folder, moving = pathlib.Path(name), kind == "moving"
-        scene = make_moving(folder, side) if moving else start_cost.make_scene(folder, side, kind == "rough")
+        scene = make_moving(folder, side) if moving else raster_session.make_scene(folder, side, kind == "rough")
         memory, figures = measure(scene, folder / "out", args, 3 if moving else 10), stated(scene, args)
     rows = []
     for program, (now, peak) in memory.items():
@@ -103,10 +92,7 @@ def main():
     except Failed as complaint:
         print(f"memory_figures.py: {complaint}", file=sys.stderr)
         return 1
-    print("| field | heights | process | when | measured [MB] | stated [MB] | stated above |\n|---|---|---|---|---|---|---|")
-    for cells in rows:
-        print("| " + " | ".join(cells) + " |")
-    print(f"\n- machine: {processor()}, {len(os.sched_getaffinity(0))} cores")
+    print_table(["field", "heights", "process", "when", "measured [MB]", "stated [MB]", "stated above"], rows)
     return 0
 
 
