@@ -5,7 +5,7 @@
 Makes a raster and measures an undisturbed start. Then each row of CASES sends each of its signals to its process, at each of
 MOMENTS. The session must end with a line from a process that is left. It must leave nothing behind: no process, no temporary
 folder, no shared memory. Prints a line for each try, with the time from the signal to the last end. The exit status is 0 if all
-of this holds and no end took longer than --limit, else 1. docs/recovery.md
+of this holds, at least one try was made, and no end took longer than --limit, else 1. docs/recovery.md
 """
 
 import os
@@ -168,6 +168,20 @@ def one(args, folder, scene, whole, case):
         start.end()
 
 
+def tries_of(args):
+    """Returns (process, signal, --restarts, whether the session ends, moment) of each try that the options ask for."""
+    return [(process, number, restarts, ends, moment) for process, numbers, restarts, ends in CASES for number in numbers
+            for moment in MOMENTS if process in args.processes and number in args.signals and str(moment) in args.moments]
+
+
+def result_of(bad, made):
+    """Returns the exit status. A check without a try has shown nothing."""
+    if made == 0:
+        print("kill_starts.py: no try was made; ask for other --processes, --signals or --moments, or for a larger --side", file=sys.stderr)
+        return 1
+    return 1 if bad else 0
+
+
 def main():
     parser = Parser(prog="kill_starts.py", description=__doc__.splitlines()[0])
     parser.add_argument("--side", type=at_least(int, 64), default=3601, help="side of the raster [pixel] (default: 3601)")
@@ -177,8 +191,9 @@ def main():
     parser.add_argument("--signals", nargs="+", choices=["INT", "TERM", "KILL"], default=["INT", "TERM", "KILL"], help="signals (default: all)")
     parser.add_argument("--moments", nargs="+", choices=[str(moment) for moment in MOMENTS], default=[str(moment) for moment in MOMENTS],
                         help="moments at which they get them: the start of a program, or a part of the start (default: all)")
+    parser.add_argument("--rounds", type=at_least(int, 1), default=1, help="how often each try is made (default: 1)")
     args = parser.parse_args()
-    bad = 0
+    bad = made = 0
     with tempfile.TemporaryDirectory(prefix="sandwall-kills-") as name:
         folder = pathlib.Path(name)
         scene = make_scene(folder, args.side, rough=False)
@@ -189,8 +204,7 @@ def main():
             print(f"kill_starts.py: {why}", file=sys.stderr)
             return 1
         print(f"an undisturbed start takes {whole:.1f} s", flush=True)
-        tries = [(process, number, restarts, ends, moment) for process, numbers, restarts, ends in CASES for number in numbers
-                 for moment in MOMENTS if process in args.processes and number in args.signals and str(moment) in args.moments]
+        tries = args.rounds * tries_of(args)
         for index, case in enumerate(tries):
             process, number, restarts, ends, moment = case
             words = f"{process:8} SIG{number:4} --restarts {restarts} at {moment!s:6}"
@@ -199,15 +213,16 @@ def main():
                 found = one(args, folder / str(index), scene, whole, case)
                 if found is None:
                     continue
+                made += 1
                 seconds, status, line = found
                 good = seconds <= args.limit or not ends
                 print(f"{'ok ' if good else 'BAD'} {words} {seconds:6.2f} s  status {status:4}  {line}", flush=True)
                 bad += 0 if good else 1
             except Violation as why:
                 print(f"BAD {words} {why}", flush=True)
-                bad += 1
-    print(f"{bad} of {len(tries)} bad")
-    return 1 if bad else 0
+                bad, made = bad + 1, made + 1
+    print(f"{bad} of {made} bad; {len(tries) - made} of {len(tries)} tries found no process to end, or a session with a frame")
+    return result_of(bad, made)
 
 
 if __name__ == "__main__":
