@@ -51,10 +51,12 @@ private:
     host::WholeFile& file_;
 };
 
-/// Writes the bytes of Checkpoint::encode(), with the state that `putState` writes.
-/// Calls `between` again and again.
+constexpr double kCompressed = 0.9;  // part of the work after which the file is read again for its checksum
+
+/// Writes the bytes of Checkpoint::encode(), with the state that `putState` writes. Calls `done` for the part of the
+/// work after that.
 void putInto(host::WholeFile& file, const Checkpoint& checkpoint,
-             const std::function<void(base::ByteWriter&)>& putState, const std::function<void()>& between) {
+             const std::function<void(base::ByteWriter&)>& putState, const std::function<void(double)>& done) {
     FileSink sink(file);
     base::ByteWriter writer(sink);
     journal::writeOrigin(kCheckpointKind, host::release(), writer);
@@ -74,16 +76,19 @@ void putInto(host::WholeFile& file, const Checkpoint& checkpoint,
     writer.flush();
     // Lengths come before what they are the lengths of, so the checksum can be computed only now.
     journal::FileSum sum;
+    const auto size = static_cast<double>(file.stream().tellp());
+    double read = 0;
     file.readBack([&](std::span<const std::uint8_t> piece) {
         sum.add(piece);
-        between();
+        read += static_cast<double>(piece.size());
+        done(kCompressed + (1 - kCompressed) * std::min(1.0, read / size));
     });
     writer.put(sum.value());
     writer.flush();
 }
 
 void write(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept,
-           const std::function<void(base::ByteWriter&)>& putState, const std::function<void()>& between) {
+           const std::function<void(base::ByteWriter&)>& putState, const std::function<void(double)>& done) {
     try {
         host::makeFolders(folderOf(journal));
     } catch (const fs::filesystem_error& error) {
@@ -91,7 +96,7 @@ void write(const fs::path& journal, const Checkpoint& checkpoint, std::size_t ke
             fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.code().message()));
     }
     host::WholeFile file(checkpointFile(journal, checkpoint.step), host::WholeFile::Other::refused);
-    putInto(file, checkpoint, putState, between);
+    putInto(file, checkpoint, putState, done);
     file.keepSynced();
     const std::vector<std::uint64_t> steps = checkpointsOf(journal);
     for (std::size_t i = kept; i < steps.size(); ++i) {
@@ -140,14 +145,19 @@ void forgetHalves(const fs::path& journal) {
 void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept) {
     write(
         journal, checkpoint, kept, [&checkpoint](base::ByteWriter& writer) { writer.putBytes(checkpoint.state); },
-        [] {});
+        [](double) {});
 }
 
 void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, const sand::StateCopy& copy,
-                     std::size_t kept, const std::function<void()>& between) {
-    write(
-        journal, checkpoint, kept, [&copy, &between](base::ByteWriter& writer) { copy.encodeInto(writer, between); },
-        between);
+                     std::size_t kept, const std::function<void(double)>& done) {
+    const auto compress = [&](base::ByteWriter& writer) {
+        // Sand at rest has no fluxes, and need not have a stroke, so that the copy itself tells how many stripes it
+        // has.
+        const auto stripes = static_cast<double>(copy.stripes());
+        double ended = 0;
+        copy.encodeInto(writer, [&] { done(kCompressed * std::min(1.0, ++ended / stripes)); });
+    };
+    write(journal, checkpoint, kept, compress, done);
 }
 
 Checkpoint readCheckpoint(const fs::path& file) {

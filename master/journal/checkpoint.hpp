@@ -52,10 +52,11 @@ void forgetHalves(const std::filesystem::path& journal);
 /// checkpoints. Throws base::InputError if the disk refuses it. Any thread, but only one at a time.
 void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, std::size_t kept);
 /// Writes `checkpoint` with the state `copy` instead of its own. Needs memory for a stripe of the sand, because it
-/// writes the file while it compresses the state. `copy` must be complete. `between` is called after each stripe; it
-/// may throw, and no checkpoint is then written.
+/// writes the file while it compresses the state. `copy` must be complete. `done` is called after each stripe, and
+/// while the file is read again, with the part of the work that is done, 0 to 1. It may throw, and no checkpoint is
+/// then written.
 void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, const sand::StateCopy& copy,
-                     std::size_t kept, const std::function<void()>& between);
+                     std::size_t kept, const std::function<void(double share)>& done);
 /// Reads a file of checkpointFile(). Throws base::FormatError if the file or its folder is a link, or the file cannot
 /// be read or is damaged.
 [[nodiscard]] Checkpoint readCheckpoint(const std::filesystem::path& file);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -18,7 +17,6 @@
 #include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/file_parts.hpp"
-#include "sand/model/grid_codec.hpp"
 #include "scene/model/scene.hpp"
 
 namespace master {
@@ -30,8 +28,6 @@ constexpr std::size_t kCheckpointsKept = 3;  // the newest two may be damaged
 
 // The longest time that the ranks wait for a checkpoint at the end.
 constexpr std::chrono::milliseconds kHeldRanks{500};
-
-constexpr double kGridsOfState = 6;  // at most: heights and two fluxes, now and before the stroke
 
 bool hasSetAside(const std::filesystem::path& checkpoints) {
     std::error_code none;
@@ -49,7 +45,6 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
       journal_(out / "session.journal"),
       buildId_(std::move(buildId)),
       sceneDigest_(scene.rules.digest()),
-      stripes_(kGridsOfState * std::ceil(static_cast<double>(scene.rules.columns) * scene.rules.rows / sand::kStripe)),
       lastCheckpoint_(now()) {
     if (options_.policy == JournalPolicy::off) {
         requireNoWriter();
@@ -279,11 +274,10 @@ void JournalKeeper::continueCopy(const sand::Replica& replica, std::int64_t cell
 }
 
 void JournalKeeper::writeInBackground() {
-    checkpoint_.emplace(checkpointStep_, [begun = std::make_shared<const Begun>(std::move(*begun_)), journal = journal_,
-                                          stripes = stripes_](UnfinishedCheckpoint::Work& work) {
-        double done = 0;
-        writeCheckpoint(journal, begun->checkpoint, begun->copy, kCheckpointsKept, [&] {
-            work.setDone(std::min(1.0, ++done / stripes));
+    checkpoint_.emplace(checkpointStep_, [begun = std::make_shared<const Begun>(std::move(*begun_)),
+                                          journal = journal_](UnfinishedCheckpoint::Work& work) {
+        writeCheckpoint(journal, begun->checkpoint, begun->copy, kCheckpointsKept, [&work](double share) {
+            work.setDone(share);
             work.requireWanted();
         });
     });

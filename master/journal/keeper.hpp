@@ -131,7 +131,6 @@ private:
     std::filesystem::path journal_;
     std::string buildId_;
     std::uint64_t sceneDigest_;
-    double stripes_;                         // pieces in which a state is compressed, at most
     std::optional<JournalWriter> writer_;    // nullopt if off or failed
     bool stopped_ = false;                   // the sand is stopped because the disk is full
     double stoppedSince_ = 0, lastTry_ = 0;  // [s]

@@ -2,6 +2,7 @@
 // The keeper keeps three checkpoints. A resume uses none of sand that is in doubt.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -61,13 +62,13 @@ protected:
 TEST_F(Checkpoints, AFileThatIsLeftOutLeavesNothing) {
     begin({});
     ASSERT_TRUE(showFrame());
-    const auto stop = [] { throw std::runtime_error("it is left out"); };
+    const auto stop = [](double) { throw std::runtime_error("it is left out"); };
     master::Checkpoint checkpoint;
     checkpoint.step = 1;
     EXPECT_THROW(master::writeCheckpoint(journal(), checkpoint, replica_.copyState(), 3, stop), std::runtime_error);
     const std::filesystem::path folder = master::checkpointFile(journal(), 1).parent_path();
     EXPECT_TRUE(std::filesystem::is_empty(folder));
-    master::writeCheckpoint(journal(), checkpoint, replica_.copyState(), 3, [] {});
+    master::writeCheckpoint(journal(), checkpoint, replica_.copyState(), 3, [](double) {});
     EXPECT_EQ(master::checkpointsOf(journal()), Steps{1});
 }
 
@@ -87,13 +88,28 @@ TEST_F(Checkpoints, OneThatIsWrittenInPiecesHasTheBytesOfAWholeOne) {
     replica_.apply({1, 2, true, {{300 * sand::kProbePerCell, 300 * sand::kProbePerCell, 0}}});
     master::Checkpoint checkpoint{7, "test", 8, 2, 3, 1, replica_.stateHash(), {}};
     int stripes = 0;
-    master::writeCheckpoint(journal(), checkpoint, replica_.copyState(), 3, [&stripes] { ++stripes; });
+    master::writeCheckpoint(journal(), checkpoint, replica_.copyState(), 3, [&stripes](double) { ++stripes; });
     EXPECT_GT(stripes, 3);
     checkpoint.state = replica_.encodeState();
     ASSERT_GT(checkpoint.state.size(), 3 * base::ByteWriter::kPiece);
     EXPECT_TRUE(bytesOf(master::checkpointFile(journal(), 2)) == checkpoint.encode());
     master::writeCheckpoint(journal(), checkpoint, 3);
     EXPECT_TRUE(bytesOf(master::checkpointFile(journal(), 2)) == checkpoint.encode());
+}
+
+// Sand at rest has a sixth of the stripes of a state with fluxes and a stroke.
+TEST_F(Checkpoints, OneOfSandAtRestTellsHowMuchOfItIsWritten) {
+    scene_ = samples::flatScene(1500, 1500);
+    replica_ = sand::Replica(scene_);
+    begin({});
+    std::vector<double> shares;
+    master::writeCheckpoint(journal(), {}, replica_.copyState(), 3, [&](double share) { shares.push_back(share); });
+    ASSERT_GE(shares.size(), 4U);
+    EXPECT_DOUBLE_EQ(shares[0], 0.3);
+    EXPECT_DOUBLE_EQ(shares[1], 0.6);
+    EXPECT_DOUBLE_EQ(shares[2], 0.9);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_EQ(shares.back(), 1);
 }
 
 // Steps change the sand while it is copied.
