@@ -194,7 +194,7 @@ void GridMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
                 continue;  // another part of this update has marked it
             }
             changed.marked = changed.revision = revision_;
-            changed.measuredFrom.reset();
+            changed.measured = {};
             changed.heights = heightsUnder(changed.vertices);
             Group& group = groupOf(x, y);
             group.revision = revision_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -72,11 +73,15 @@ private:
     struct Chunk {
         sand::CellRect vertices;  // of the vertex grid
         shapes::HeightRange heights;
-        std::uint64_t marked = 0;         // last revision that changed its vertices
-        std::uint64_t revision = 0;       // last revision that changed its vertices or `moving`
-        bool moving = false;              // whether sand that it depends on counts as moving
-        std::optional<int> measuredFrom;  // finest level of `errors`; nullopt unless they belong to the current surface
-        LevelErrors errors;
+        std::uint64_t marked = 0;    // last revision that changed its vertices
+        std::uint64_t revision = 0;  // last revision that changed its vertices or `moving`
+        bool moving = false;         // whether sand that it depends on counts as moving
+        struct Measured {
+            std::optional<int> from;  // finest level of `errors`; nullopt unless they belong to the current surface
+            LevelErrors errors;
+        };
+        // The errors asked for last, and those before with another finest level. Two eyes may differ in it.
+        std::array<Measured, 2> measured;
         std::uint64_t chosenFor = 0;  // value of choice_ for which `level` was chosen
         int level = 0;
         std::vector<ChunkGeometry> geometries;

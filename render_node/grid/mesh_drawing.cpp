@@ -73,12 +73,15 @@ int GridMesh::chooseLevel(Chunk& asked, const LevelRule& rule) {
 /// Returns the errors of a chunk above this level. They do not depend on earlier drawings, so that all ranks choose
 /// alike.
 const LevelErrors& GridMesh::errorsOfChunk(Chunk& chunk, int finest) {
-    if (chunk.measuredFrom != finest) {
-        chunk.errors = errorsOf(surface_, chunk.vertices, sun_, finest, layout_.coarsest);
-        chunk.measuredFrom = finest;
+    auto& [last, before] = chunk.measured;
+    if (last.from != finest) {
+        std::swap(last, before);
+    }
+    if (last.from != finest) {
+        last = {finest, errorsOf(surface_, chunk.vertices, sun_, finest, layout_.coarsest)};
         ++work_.measuredChunks;
     }
-    return chunk.errors;
+    return last.errors;
 }
 
 /// Returns the levels of a chunk and of its edges. The finer of two chunks determines their common edge. Edges at the

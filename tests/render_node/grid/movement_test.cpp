@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <random>
@@ -123,6 +124,25 @@ protected:
     int coarse_ = 0;  // chunks above level 0 in all whole pictures of the last draw()
     int inPart_ = 0;  // pictures that were drawn in part
 };
+
+// A picture of half as many pixels along each side cannot show the finest level. Two eyes may differ so, too.
+TEST_F(MovingSand, OfAChunkIsMeasuredOnceForTwoPicturesThatShowOtherLevels) {
+    show("desktop", {0}, walls::Stereo::mono, 60, 4);
+    views_.emplace_back(sample::reduced(wall_, 2).tiles.at(0), walls::eyesOf(walls::Stereo::mono)[0]);
+    painter_->setSharp(true);
+    painter_->update(replica_->surface().data(), replica_->takeChange());
+    painter_->setTool(replica_->probe(), replica_->engaged());
+    std::vector<std::int64_t> measured;
+    for (int round = 0; round < 3; ++round) {
+        for (TwiceDrawn& view : views_) {
+            (void)sample::draw(*painter_, cameraOf(view), view.whole);
+            measured.push_back(painter_->work().measuredChunks);
+        }
+    }
+    ASSERT_GT(measured[0], 0);
+    ASSERT_GT(measured[1], measured[0]) << "the second picture has another finest level";
+    EXPECT_EQ(measured.back(), measured[1]);
+}
 
 TEST_F(MovingSand, InARandomSessionIsDrawnInPartsAsAWhole) {
     const unsigned seed = test::randomSeed();
