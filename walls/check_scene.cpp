@@ -84,8 +84,7 @@ std::string memoryTable(const scene::SandSize& sand, const Wall* wall) {
 
 std::string describeScene(const std::string& file, const Wall* wall) {
     scene::SizeCollector sizes;
-    const scene::Scene scene =
-        scene::loadScene(file, {.raster = [&](const scene::RasterSize& raster) { sizes.addRaster(raster); }});
+    const scene::Scene scene = scene::loadScene(file, sizes.checks());
     std::string text = fmt::format("scene '{}': {} x {} cells of {}\n", scene.name, scene.rules.columns,
                                    scene.rules.rows, scene.terrain.cellSize());
     for (const scene::RasterStatement& statement : *scene.statements) {
@@ -100,8 +99,7 @@ std::string describeScene(const std::string& file, const Wall* wall) {
     if (const auto tools = scene::largestToolsOf(scene)) {
         fmt::format_to(std::back_inserter(text), "{}\n", tools->text(scene));
     }
-    scene::SandSize sand = scene::SandSize::of(scene);
-    sand.rasterBytes = sizes.rasterBytes();
+    const scene::SandSize sand = sizes.of(scene);
     text += memoryTable(sand, wall);
     return sand.hasHeights() ? text + scene::StartTime::of(sand).text() + "\n" : text;  // estimated for heights only
 }

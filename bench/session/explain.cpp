@@ -93,12 +93,6 @@ void explainMemory(const scene::Scene& scene, Explanation& rows) {
                 scene.ground ? "a height of rock per cell" : "the scene has none");
 }
 
-scene::SandSize sizeOf(const scene::Scene& scene, const scene::SizeCollector& sizes) {
-    scene::SandSize size = scene::SandSize::of(scene);
-    size.rasterBytes = sizes.rasterBytes();
-    return size;
-}
-
 /// Lists the memory of each process of a session on the desktop wall, as the check before the start takes it.
 void explainProcesses(const scene::SandSize& sand, Explanation& rows) {
     constexpr std::int64_t kFrameBuffers = std::int64_t{12} * 1280 * 720;  // [byte]
@@ -213,8 +207,7 @@ void explainSteps(const scene::Scene& scene, const Settings& settings, Explanati
 
 void explain(const Settings& settings, Csv& csv) {
     scene::SizeCollector sizes;
-    const scene::Scene scene =
-        scene::loadScene(settings.scene, {.raster = [&](const scene::RasterSize& raster) { sizes.addRaster(raster); }});
+    const scene::Scene scene = scene::loadScene(settings.scene, sizes.checks());
     for (const scene::RasterStatement& statement : *scene.statements) {
         csv.note(statement.file + ": " + statement.text());
     }
@@ -229,10 +222,10 @@ void explain(const Settings& settings, Csv& csv) {
     if (const auto cost = scene::stepCostOf(scene)) {
         csv.note(cost->text(scene));
     }
-    csv.note(scene::StartTime::of(sizeOf(scene, sizes)).text());
+    csv.note(scene::StartTime::of(sizes.of(scene)).text());
     Explanation rows(csv);
     explainMemory(scene, rows);
-    explainProcesses(sizeOf(scene, sizes), rows);
+    explainProcesses(sizes.of(scene), rows);
     explainRules(scene, rows);
     explainSteps(scene, settings, rows);
     for (const auto& [name, bytes] : mappedLibraries()) {

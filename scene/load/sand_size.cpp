@@ -19,7 +19,21 @@ public:
 
 void SizeCollector::addRaster(const RasterSize& size) { rasterBytes_ = std::max(rasterBytes_, size.bytes()); }
 
-SandSize SizeCollector::with(const FieldToMake& field) const { return {field, field.ground, rasterBytes_}; }
+SizeChecks SizeCollector::checks() {
+    return {.raster = [this](const RasterSize& size) { addRaster(size); },
+            .field = [this](const FieldToMake& field) { settles_ = field.settles; }};
+}
+
+SandSize SizeCollector::of(const Scene& scene) const {
+    SandSize size = SandSize::of(scene);
+    size.rasterBytes = rasterBytes_;
+    size.settles = settles_;
+    return size;
+}
+
+SandSize SizeCollector::with(const FieldToMake& field) const {
+    return {.field = field, .ground = field.ground, .rasterBytes = rasterBytes_, .settles = field.settles};
+}
 
 std::optional<SandSize> sizeOfScene(const std::filesystem::path& file) {
     const host::TomlTable toml = host::TomlTable::load(file);

@@ -19,12 +19,16 @@ class SizeCollector {
 public:
     /// Called for a raster, before its pixels are read.
     void addRaster(const RasterSize& size);
-    [[nodiscard]] std::int64_t rasterBytes() const { return rasterBytes_; }
+    /// Returns checks that collect, and refuse nothing. The collector must outlive them.
+    [[nodiscard]] SizeChecks checks();
+    /// Returns the size of the sand of `scene`, which was loaded with checks().
+    [[nodiscard]] SandSize of(const Scene& scene) const;
     /// Returns the size of the sand if `field` is its field.
     [[nodiscard]] SandSize with(const FieldToMake& field) const;
 
 private:
     std::int64_t rasterBytes_ = 0;  // of the largest
+    bool settles_ = false;
 };
 
 }  // namespace scene

@@ -11,7 +11,8 @@ namespace scene {
 
 /// Size of a field before its heights are made.
 struct FieldToMake : sand::FieldSize {
-    bool ground = false;  // whether it gets rock, or walls where the file has no data
+    bool ground = false;   // whether it gets rock, or walls where the file has no data
+    bool settles = false;  // whether its sand comes to rest before the session begins
 };
 
 /// Checks that are called before the memory of a scene is taken, and the progress of its reading. The checks throw if

@@ -36,7 +36,9 @@ sand::HeightField levelField(const host::TomlTable& file, const SizeChecks& chec
     field.finish();
     if (checks.field) {
         const host::TomlTable terrain = file.requiredTable("terrain");
-        checks.field({{columns, rows, file.has("tin")}, terrain.has("layer") || terrain.has("bedrock")});
+        checks.field({{columns, rows, file.has("tin")},
+                      terrain.has("layer") || terrain.has("bedrock"),
+                      terrain.flagOr("settle", false)});
     }
     return {columns, rows, width / columns};
 }
@@ -102,7 +104,9 @@ public:
 
 private:
     [[nodiscard]] FieldToMake sizeOf(int columns, int rows, bool walls) const {
-        return {{columns, rows, tin_}, walls || terrain_.has("layer") || terrain_.has("bedrock")};
+        return {{columns, rows, tin_},
+                walls || terrain_.has("layer") || terrain_.has("bedrock"),
+                terrain_.flagOr("settle", false)};
     }
 
     const host::TomlTable& terrain_;

@@ -11,6 +11,8 @@ namespace {
 constexpr std::int64_t kMebibyte = 1 << 20;
 constexpr std::int64_t kNumber = sizeof(std::int32_t);  // [byte]
 
+constexpr std::int64_t kSettling = 104;  // [byte] for each cell that sand::grid::settle() computes
+
 std::int64_t cellsOf(const sand::FieldSize& field) { return std::int64_t{field.columns} * field.rows; }
 
 /// Returns the memory of numbers that are kept for an undo or a checkpoint, one for each cell. They are packed
@@ -60,7 +62,7 @@ bool SandSize::hasHeights() const { return field.bytesOfReplica().has_value(); }
 ProcessMemory::ProcessMemory(const SandSize& sand, const Fixed& fixed, bool readsRaster)
     : shared_(fixed.shared + (readsRaster ? kImport : 0)) {
     const std::int64_t later = fixed.own + shared_, start = later + fixed.start;
-    add("program and libraries", {start, start, later, later, later});
+    add("program and libraries", {start, start, later, later, later, start});
     addReplica(sand);
 }
 
@@ -90,7 +92,14 @@ void ProcessMemory::addReplica(const SandSize& sand) {
 void ProcessMemory::addTerrain(const SandSize& sand) {
     const std::int64_t plane = bytesOfPlane(sand.field), ground = sand.ground ? plane : 0;
     add("raster", {sand.rasterBytes, 0, 0, 0, 0});
-    add("heights of the scene", {plane + ground, plane, 0, 0, 0});
+    add("heights of the scene", {plane + ground, plane, 0, 0, 0, plane + ground});
+    if (sand.settles && sand.hasHeights()) {
+        // A replica of its own. Sand with rock or walls settles by sweeps, other sand on several grids of 64-bit
+        // floats.
+        const std::int64_t cells = cellsOf(sand.field), marks = cells / 16, runs = cells / 4;
+        const std::int64_t replica = plane + bytesOfPackedPlane(sand.field) + marks;
+        add("settling of the scene", {0, 0, 0, 0, 0, replica + (sand.ground ? 2 * plane + runs : kSettling * cells)});
+    }
 }
 
 ProcessMemory ProcessMemory::ofServer(const SandSize& sand) {
@@ -160,7 +169,8 @@ std::int64_t ProcessMemory::bytes(MemoryStage stage) const {
 
 MemoryFigures ProcessMemory::figures() const {
     return {bytes(MemoryStage::rest),
-            std::max({bytes(MemoryStage::read), bytes(MemoryStage::made), bytes(MemoryStage::swept)}),
+            std::max({bytes(MemoryStage::read), bytes(MemoryStage::settled), bytes(MemoryStage::made),
+                      bytes(MemoryStage::swept)}),
             bytes(MemoryStage::moving)};
 }
 

@@ -13,19 +13,19 @@
 /// Memory that each process of a session takes. This is the only place that states it.
 ///
 /// The figures are for sand as rough as can be, whose heights cannot be compressed. Smooth sand takes less. They leave
-/// out a `settle` of a height field (docs/limits.md), and a state that is sent to a rank or a server during the
-/// session.
+/// out a `settle` of an operator (docs/limits.md), and a state that is sent to a rank or a server during the session.
 namespace scene {
 
 /// Stages of a process in which its memory differs.
 enum class MemoryStage : std::uint8_t {
-    read,   // it reads the scene's file
-    made,   // it makes its replica, and what it sends or draws
-    swept,  // the first sweep visits all cells
-    rest,   // all sand is at rest, and a stroke is kept for an undo
-    moving  // all sand moves, and has since a stroke that is kept; the master writes a checkpoint
+    read,    // it reads the scene's file
+    made,    // it makes its replica, and what it sends or draws
+    swept,   // the first sweep visits all cells
+    rest,    // all sand is at rest, and a stroke is kept for an undo
+    moving,  // all sand moves, and has since a stroke that is kept; the master writes a checkpoint
+    settled  // between `read` and `made`: the sand of the scene's file comes to rest, if the file has `settle`
 };
-inline constexpr std::size_t kMemoryStages = 5;
+inline constexpr std::size_t kMemoryStages = 6;
 
 /// Memory at the points of a session that are printed [byte].
 struct MemoryFigures {
@@ -52,6 +52,7 @@ struct SandSize {
     std::int64_t rasterBytes = 0;  // memory of the pixels while a raster is read [byte]
     std::int64_t toolBytes = 0;    // of a coarse phase [byte]
     std::int64_t meshBytes = 0;    // of triangles; 0 for a height field, and before the triangles are made
+    bool settles = false;          // whether the scene's file has `settle`, which server and master do
 
     /// Returns the size of the sand that `start` has.
     [[nodiscard]] static SandSize of(const sand::Start& start);
@@ -81,7 +82,7 @@ private:
         parts_.push_back({name, bytes});
     }
     void addReplica(const SandSize& sand);
-    /// Adds what a process that reads the scene's file holds until its replica exists.
+    /// Adds what a process that reads the scene's file holds until its replica exists, also while its sand settles.
     void addTerrain(const SandSize& sand);
 
     std::vector<MemoryPart> parts_;

@@ -75,6 +75,20 @@ TEST_F(SceneMemory, OfAServerIsThatOfAllSandMoving) {
     EXPECT_NE(refusalOfServer(withRock - 1, rock), "nothing");
 }
 
+TEST_F(SceneMemory, CountsTheSettlingOfASceneFile) {
+    const std::string text = "[field]\ncolumns = 4096\nrows = 4096\n[terrain]\n";
+    const auto still = scene::sizeOfScene(write("still.toml", text + kRest)),
+               settles = scene::sizeOfScene(write("settles.toml", text + "settle = true\n" + kRest));
+    EXPECT_FALSE(still->settles);
+    EXPECT_TRUE(settles->settles);
+    EXPECT_GE(scene::ProcessMemory::ofMaster(*settles).figures().peak, std::int64_t{90} * 4096 * 4096);
+    EXPECT_LT(scene::ProcessMemory::ofMaster(*still).figures().peak, std::int64_t{60} * 4096 * 4096);
+    scene::SizeCollector sizes;
+    const scene::Scene small = scene::loadScene(
+        write("small.toml", "[field]\ncolumns = 40\n[terrain]\nsettle = true\n" + kRest), sizes.checks());
+    EXPECT_TRUE(sizes.of(small).settles);
+}
+
 TEST_F(SceneMemory, IsKnownBeforePixelsAreRead) {
     write("t.asc", "ncols 400\nnrows 300\ncellsize 1\nNODATA_value -1\n1 word\n");
     const auto size =

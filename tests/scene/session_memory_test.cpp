@@ -22,6 +22,7 @@
 #include "sand/grid/tile_hash.hpp"
 #include "sand/model/grid_codec.hpp"
 #include "sand/replica.hpp"
+#include "sand/surface_factory.hpp"
 #include "scene/model/scene.hpp"
 
 namespace {
@@ -198,6 +199,33 @@ TEST(SessionMemory, HoldsWhileACheckpointIsWritten) {
               ProcessMemory::ofMaster({{kSide, kSide, false}}, false).bytes(MemoryStage::moving) -
                   partOf(ProcessMemory::ofMaster({}), "program and libraries", MemoryStage::moving))
         << "without checkpoints";
+}
+
+/// Lets the sand of a scene settle as scene::loadScene() does.
+void settle(scene::Scene& scene) {
+    sand::Replica replica(scene);
+    replica.apply({.epoch = 1, .number = 1, .edit = sand::Edit::settle});
+    sand::startFrom(replica.surface(), scene);
+}
+
+TEST(SessionMemory, HoldsWhileTheSandOfASceneSettles) {
+    SandSize size{{kSide / 2, kSide / 2, false}};
+    EXPECT_EQ(ProcessMemory::ofServer(size).bytes(MemoryStage::settled),
+              ProcessMemory::ofServer(size).bytes(MemoryStage::read))
+        << "a scene that does not settle";
+    size.settles = true;
+    const std::int64_t taken = peakOf([](const auto& begins) {
+        scene::Scene scene = roughest(kSide / 2);
+        begins();
+        settle(scene);
+    });
+    for (const ProcessMemory& process : {ProcessMemory::ofServer(size), ProcessMemory::ofMaster(size)}) {
+        expectStated(partOf(process, "settling of the scene", MemoryStage::settled), taken);
+        EXPECT_GE(process.figures().peak, process.bytes(MemoryStage::settled));
+    }
+    EXPECT_EQ(ProcessMemory::ofRank(size, 0).bytes(MemoryStage::settled),
+              partOf(ProcessMemory::ofRank(size, 0), "program and libraries", MemoryStage::settled))
+        << "a rank gets sand that has settled";
 }
 #endif
 
