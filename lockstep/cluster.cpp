@@ -18,7 +18,7 @@
 namespace lockstep {
 namespace {
 
-enum ClusterTag : int { kGatherLengthTag = 30, kGatherTag, kFarewellTag, kStartTag };
+enum ClusterTag : int { kGatherLengthTag = 30, kGatherTag, kFarewellTag };  // cluster_start.cpp has more
 
 constexpr const char* kInit = "the start of MPI";
 constexpr const char* kStart = "the start";
@@ -107,45 +107,6 @@ void Cluster::mayTakeLong(bool may) const {
     watchdog_->arm();  // a new wait begins here
 }
 
-void Cluster::progress(const char* work, double share) const {
-    constexpr double kProgress = 0.01;  // a smaller part does not count
-    const bool same = ownWork_ == work;
-    if (same && share < progress_ + kProgress) {
-        return;
-    }
-    progress_ = share;
-    ownWork_ = work;
-    send(StartNote::progress);
-    mayTakeLong(false);
-}
-
-void Cluster::progressEnds() const {
-    if (ownWork_ != nullptr) {
-        ownWork_ = nullptr;
-        send(StartNote::quiet);
-        mayTakeLong(true);
-    }
-}
-
-/// Sends a note to the render ranks, which wait in awaitBroadcast(). The messages are short, so that MPI keeps them for
-/// ranks that do not receive yet.
-void Cluster::send(StartNote note) const {
-    for (int rank = 1; rank < size_; ++rank) {
-        MPI_Send(&note, 1, MPI_BYTE, rank, kStartTag, frames_);
-    }
-}
-
-void Cluster::awaitBroadcast() const {
-    if (isMaster()) {
-        ownWork_ = nullptr;
-        send(StartNote::broadcast);
-    }
-    for (auto note = StartNote::quiet; note != StartNote::broadcast && !isMaster();) {
-        MPI_Recv(&note, 1, MPI_BYTE, kMaster, kStartTag, frames_, MPI_STATUS_IGNORE);
-        mayTakeLong(note != StartNote::progress);
-    }
-}
-
 void Cluster::startUpIsOver() const { watchdog_->disarm(); }
 
 void Cluster::endBegins(double limitSeconds) const {
@@ -192,8 +153,8 @@ Wait Cluster::describeWait() const {
     return wait;
 }
 
-/// Waits at the master until all `requests` are done. `ranks` are the ranks at their other ends.
-void Cluster::await(std::span<MPI_Request> requests, std::span<const int> ranks) const {
+void Cluster::await(std::span<MPI_Request> requests, std::span<const int> ranks,
+                    const std::function<void()>& between) const {
     for (const int rank : ranks) {
         setMissing(rank, true);
     }
@@ -202,6 +163,9 @@ void Cluster::await(std::span<MPI_Request> requests, std::span<const int> ranks)
         int which = MPI_UNDEFINED;
         int found = 0;
         MPI_Testany(static_cast<int>(requests.size()), requests.data(), &which, &found, MPI_STATUS_IGNORE);
+        if (between) {
+            between();
+        }
         if (found == 0 || which == MPI_UNDEFINED) {
             backoff.rest();
             continue;
@@ -211,20 +175,27 @@ void Cluster::await(std::span<MPI_Request> requests, std::span<const int> ranks)
     }
 }
 
-base::Bytes Cluster::broadcast(const base::Bytes& fromMaster) const {
+base::Bytes Cluster::broadcast(const base::Bytes& fromMaster, const std::function<void(double)>& sent) const {
     auto size = static_cast<std::uint64_t>(fromMaster.size());
     MPI_Bcast(&size, 1, MPI_UINT64_T, kMaster, frames_);
     base::Bytes got(isMaster() ? 0 : size);
     // One pointer serves both directions; the master only reads from it.
     std::uint8_t* const data = isMaster() ? const_cast<std::uint8_t*>(fromMaster.data()) : got.data();
-    for (std::uint64_t done = 0; done < size; done += kMpiPiece) {
-        MPI_Bcast(data + done, static_cast<int>(std::min(kMpiPiece, size - done)), MPI_BYTE, kMaster, frames_);
+    constexpr std::uint64_t kLeastPiece = 1 << 20;  // [byte]; smaller pieces would take longer
+    const std::uint64_t piece = std::clamp(size / 100, kLeastPiece, kMpiPiece);
+    mayTakeLong(false);
+    for (std::uint64_t done = 0; done < size; done += piece) {
+        MPI_Bcast(data + done, static_cast<int>(std::min(piece, size - done)), MPI_BYTE, kMaster, frames_);
+        watchdog_->arm();
+        if (sent) {
+            sent(static_cast<double>(std::min(done + piece, size)) / static_cast<double>(size));
+        }
     }
     return got;
 }
 
 /// The master receives from each rank by itself. Inside MPI_Gather it could not know which rank is missing.
-std::vector<base::Bytes> Cluster::gather(const base::Bytes& mine) const {
+std::vector<base::Bytes> Cluster::gather(const base::Bytes& mine, const std::function<void()>& between) const {
     auto length = static_cast<std::uint64_t>(mine.size());
     if (!isMaster()) {
         MPI_Send(&length, 1, MPI_UINT64_T, kMaster, kGatherLengthTag, frames_);
@@ -239,14 +210,14 @@ std::vector<base::Bytes> Cluster::gather(const base::Bytes& mine) const {
     for (std::size_t i = 0; i < ranks.size(); ++i) {
         MPI_Irecv(&lengths[i], 1, MPI_UINT64_T, ranks[i], kGatherLengthTag, frames_, &requests[i]);
     }
-    await(requests, ranks);
+    await(requests, ranks, between);
     all.front() = mine;
     for (std::size_t i = 0; i < ranks.size(); ++i) {
         all[i + 1].resize(lengths[i]);
         MPI_Irecv(all[i + 1].data(), static_cast<int>(lengths[i]), MPI_BYTE, ranks[i], kGatherTag, frames_,
                   &requests[i]);
     }
-    await(requests, ranks);
+    await(requests, ranks, between);
     return all;
 }
 

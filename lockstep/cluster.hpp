@@ -55,11 +55,13 @@ public:
     /// Returns the bells of this host's ranks. The sender of a message rings the receiver's bell after the message.
     [[nodiscard]] const HostBells& bells() const { return *bells_; }
 
-    /// Returns the master's argument `fromMaster` on the render ranks, and no bytes at the master, which has them.
-    /// Collective.
-    [[nodiscard]] base::Bytes broadcast(const base::Bytes& fromMaster) const;
+    /// Returns the master's argument `fromMaster` on the render ranks, and no bytes at the master, which has them. The
+    /// limit of the start counts from each hundredth of the bytes. Calls `sent` with the part that was sent, 0 to 1,
+    /// unless it is empty. Collective, before the first frame.
+    [[nodiscard]] base::Bytes broadcast(const base::Bytes& fromMaster,
+                                        const std::function<void(double)>& sent = {}) const;
     /// Returns the bytes `mine` of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
-    [[nodiscard]] std::vector<base::Bytes> gather(const base::Bytes& mine) const;
+    [[nodiscard]] std::vector<base::Bytes> gather(const base::Bytes& mine) const { return gather(mine, {}); }
 
     /// Called at the master when a wait of the start or the end has reached its limit. `rank` is the first missing
     /// rank, or -1 if it is not known. `line` is the line that was printed. Runs on the watchdog's thread.
@@ -83,6 +85,18 @@ public:
     /// before the first broadcast().
     void awaitBroadcast() const;
 
+    /// Called by a render rank while it makes its part of the session, before gatherReady(). `share` is the part of
+    /// this work that is done, 0 to 1, never a time. After each hundredth the limit of the start counts again. This
+    /// holds for this rank, for the master, and for the ranks that are ready and wait.
+    void rankProgress(double share) const;
+    /// Does the same as gather(), and takes the progress of the render ranks meanwhile. Calls `made` with the mean
+    /// of their progress, unless it is empty. Collective, before the first frame.
+    [[nodiscard]] std::vector<base::Bytes> gatherReady(const base::Bytes& mine,
+                                                       const std::function<void(double)>& made = {}) const;
+    /// Returns the master's argument `master` on all ranks. Takes the progress of the other ranks meanwhile.
+    /// Collective, after gatherReady().
+    [[nodiscard]] bool agree(bool master) const;
+
     /// Stops the watchdog of the start. FrameBarrier calls this, because it has a watchdog of its own.
     void startUpIsOver() const;
     /// Starts the watchdog of the end, with a limit of `limitSeconds` [s]. FrameBarrier calls this when it ends.
@@ -97,12 +111,20 @@ public:
 private:
     /// Message of the master to the render ranks while it prepares the session.
     enum class StartNote : std::uint8_t {
-        progress,  // the usual limit of the start counts from now
-        quiet,     // the master may be silent for an hour
-        broadcast  // the session comes
+        progress,   // the usual limit of the start counts from now
+        quiet,      // the master may be silent for an hour
+        broadcast,  // the session comes
+        begin,      // agree() returns true
+        refuse      // agree() returns false
     };
     void send(StartNote note) const;
-    void await(std::span<MPI_Request> requests, std::span<const int> ranks) const;
+    void send(StartNote note, int rank) const;
+    /// Waits at the master until all `requests` are done. `ranks` are the ranks at their other ends. Calls `between`
+    /// after each look.
+    void await(std::span<MPI_Request> requests, std::span<const int> ranks,
+               const std::function<void()>& between = {}) const;
+    [[nodiscard]] std::vector<base::Bytes> gather(const base::Bytes& mine, const std::function<void()>& between) const;
+    void takeRankProgress(const std::function<void(double)>& made) const;
     void farewell() const;
     [[nodiscard]] Wait describeWait() const;
     [[nodiscard]] std::vector<int> missing() const;
@@ -113,7 +135,9 @@ private:
     std::atomic<int> missingSize_{0};                    // number of entries of missing_
     mutable std::atomic<const char*> phase_;             // named by the watchdog
     mutable std::atomic<const char*> ownWork_{nullptr};  // of the master, for which all ranks wait; null for none
-    mutable double progress_ = 0;                        // of ownWork_, 0 to 1
+    mutable double progress_ = 0;                        // of ownWork_, or of this rank's own part, 0 to 1
+    mutable std::vector<double> rankShares_;             // progress of each rank, at the master
+    mutable std::int64_t passedOn_ = 0;                  // time of the last note about progress of ranks [ns]
     mutable std::mutex mutex_;                           // of the two members below
     mutable std::vector<std::string> names_;
     mutable LastWords lastWords_;

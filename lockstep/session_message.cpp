@@ -5,11 +5,11 @@
 
 namespace lockstep {
 
-std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
-                                               const std::optional<SessionMessage>& fromMaster) {
+std::optional<SessionMessage> broadcastSession(const Cluster& cluster, const std::optional<SessionMessage>& fromMaster,
+                                               const std::function<void(double)>& sent) {
     cluster.mayTakeLong(true);
     cluster.awaitBroadcast();
-    const base::Bytes bytes = cluster.broadcast(fromMaster ? base::encoded(*fromMaster) : base::Bytes{});
+    const base::Bytes bytes = cluster.broadcast(fromMaster ? base::encoded(*fromMaster) : base::Bytes{}, sent);
     cluster.mayTakeLong(false);
     if (bytes.empty()) {
         return std::nullopt;
@@ -17,19 +17,16 @@ std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
     return base::decoded<SessionMessage>(bytes);
 }
 
-std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine) {
+std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine,
+                                       const std::function<void(double)>& made) {
     std::vector<Readiness> result;
-    for (const base::Bytes& bytes : cluster.gather(base::encoded(mine))) {
+    for (const base::Bytes& bytes : cluster.gatherReady(base::encoded(mine), made)) {
         result.push_back(base::decoded<Readiness>(bytes));
     }
     return result;
 }
 
-bool agreeToGoOn(const Cluster& cluster, bool master) {
-    int goOn = master ? 1 : 0;
-    MPI_Bcast(&goOn, 1, MPI_INT, kMaster, cluster.frames());
-    return goOn != 0;
-}
+bool agreeToGoOn(const Cluster& cluster, bool master) { return cluster.agree(master); }
 
 std::vector<RankReport> gatherReports(FrameBarrier& barrier, const RankReport& mine) {
     const std::vector<base::Bytes> all = barrier.collect(base::encoded(mine));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,9 +41,10 @@ struct SessionMessage {
 };
 
 /// Returns the master's argument `fromMaster` on the render ranks, and nullopt at the master. With nullopt the master
-/// refuses the session. Collective.
+/// refuses the session. `sent` is called as Cluster::broadcast() does. Collective.
 [[nodiscard]] std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
-                                                             const std::optional<SessionMessage>& fromMaster);
+                                                             const std::optional<SessionMessage>& fromMaster,
+                                                             const std::function<void(double)>& sent = {});
 
 /// Message of a rank before the session: where it runs, and why it cannot take part, if it cannot.
 struct Readiness {
@@ -74,8 +76,10 @@ struct Readiness {
     }
 };
 
-/// Returns the readiness of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
-[[nodiscard]] std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine);
+/// Returns the readiness of all ranks at the master, in order of rank; an empty list on other ranks. `made` is called
+/// as Cluster::gatherReady() does. Collective.
+[[nodiscard]] std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine,
+                                                     const std::function<void(double)>& made = {});
 
 /// Returns the master's argument `master` on all ranks: whether the session begins. Collective.
 [[nodiscard]] bool agreeToGoOn(const Cluster& cluster, bool master);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "haptic_bridge/link/greetings.hpp"
 #include "host/build_id.hpp"
 #include "host/command_line.hpp"
+#include "host/phase_progress.hpp"
 #include "host/print_line.hpp"
 #include "host/rank_output.hpp"
 #include "host/version.hpp"
@@ -55,6 +57,13 @@ void setLastWords(const lockstep::Cluster& cluster, const master::ProgramOptions
 
 using LastCheckpoint = std::optional<master::Session::LastCheckpoint>;
 
+/// Returns a function that prints the progress of a phase of the start; see host::PhaseProgress.
+std::function<void(double)> printed(std::string phase, std::string what) {
+    return [progress = host::PhaseProgress(std::move(phase), std::move(what), [](const std::string& line) {
+                host::printLine("{}", line);
+            })](double share) mutable { progress.done(share); };
+}
+
 /// `last` gets a checkpoint that was still being written at the end.
 int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options, LastCheckpoint& last) {
     std::optional<master::World> world;
@@ -72,15 +81,18 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
         options.session.executor = pool->lend();
         world.emplace(master::loadWorld(cluster, options));
         setLastWords(cluster, options, &world->wall);
-        (void)lockstep::broadcastSession(cluster, world->message);
+        (void)lockstep::broadcastSession(cluster, world->message, printed("broadcast", "sends the scene to the ranks"));
         sessionOpen = true;
         std::exception_ptr failed;
         try {
-            sand.emplace(master::sandOf(options.session, world->scene));  // while the ranks make theirs
+            sand.emplace(master::sandOf(options.session, world->scene, [&cluster](double share) {
+                cluster.progress("the sand of the master", share);
+            }));  // while the ranks make theirs
         } catch (...) {
             failed = std::current_exception();  // the ranks still report whether they are ready
         }
-        const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0});
+        const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0},
+                                                     printed("ranks", "the ranks make their sand"));
         if (failed) {
             std::rethrow_exception(failed);
         }

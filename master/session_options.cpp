@@ -48,11 +48,20 @@ std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::
     return steps;
 }
 
-MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene) {
+MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene, const std::function<void(double)>& made) {
     const ResumedSession* resumed = options.record.resumed.get();
-    return resumed == nullptr
-               ? MasterSand(scene, options.executor, faultsOf(options.drills))
-               : MasterSand(scene, options.executor, faultsOf(options.drills), resumed->state, resumed->edits);
+    if (resumed == nullptr) {
+        return MasterSand(scene, options.executor, faultsOf(options.drills));
+    }
+    const auto all = static_cast<double>(resumed->state.size());
+    double decoded = 0;
+    return MasterSand(scene, options.executor, faultsOf(options.drills), resumed->state, resumed->edits,
+                      [&](std::size_t bytes) {
+                          decoded += static_cast<double>(bytes);
+                          if (made) {
+                              made(decoded / all);
+                          }
+                      });
 }
 
 }  // namespace master

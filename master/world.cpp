@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -33,8 +34,28 @@ namespace {
 
 constexpr double kAllRead = 0.99;  // part of a raster's heights after which the rest is short
 
-/// Finds the place where the session in --out stopped, if there is one, and returns its scene.
-std::optional<scene::Scene> resume(const MemoryUse& use, ProgramOptions& options) {
+/// Returns a function that prints the progress of some work and tells it to the ranks of `cluster`, which wait for it.
+/// Work that begins again, with a smaller part, counts as progress. `phase` and `what` are as of host::PhaseProgress.
+/// `work` names the work as in Cluster::progress().
+std::function<void(double)> told(const lockstep::Cluster& cluster, std::string phase, std::string what,
+                                 const char* work) {
+    return [&cluster, work, phase = std::move(phase), what = std::move(what), last = 0.0,
+            progress = std::optional<host::PhaseProgress>()](double share) mutable {
+        if (!progress) {  // the phase begins
+            progress.emplace(phase, what, [](const std::string& line) { host::printLine("{}", line); });
+        }
+        progress->done(share);
+        if (share < last) {
+            cluster.progressEnds();
+        }
+        last = share;
+        cluster.progress(work, share);
+    };
+}
+
+/// Finds the place where the session in --out stopped, if there is one, and returns its scene. Tells the ranks of
+/// `cluster` the progress.
+std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, const MemoryUse& use, ProgramOptions& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
     if (options.session.record.journal.policy == JournalPolicy::off) {
         throw base::InputError("--resume needs the journal of the session; leave out --journal off");
@@ -42,7 +63,11 @@ std::optional<scene::Scene> resume(const MemoryUse& use, ProgramOptions& options
     if (std::error_code none; std::filesystem::exists(std::filesystem::symlink_status(journal, none))) {
         requireMemoryOfJournal(use, journal);
     }
-    std::optional<ResumedSession> resumed = readSession(journal, options.scene);
+    std::optional<ResumedSession> resumed =
+        readSession(journal, options.scene,
+                    {.read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
+                     .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")});
+    cluster.progressEnds();
     if (!resumed) {
         host::printLine("{}: nothing to resume; the session begins", journal.string());
         return std::nullopt;
@@ -127,7 +152,7 @@ scene::Scene openRecording(const MemoryUse& use, ProgramOptions& options) {
 scene::Scene loadScene(const lockstep::Cluster& cluster, const MemoryUse& use, ProgramOptions& options) {
     options.session.record.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
-        if (std::optional<scene::Scene> scene = resume(use, options)) {
+        if (std::optional<scene::Scene> scene = resume(cluster, use, options)) {
             options.scene = options.scene.empty() ? options.out : options.scene;  // for error messages
             return std::move(*scene);
         }

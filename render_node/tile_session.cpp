@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -39,6 +40,18 @@ namespace {
 
 using host::monotonicNs;
 
+// Parts of the work before a rank is ready, at their ends. A session that is not resumed has no state.
+constexpr double kContextMade = 0.1, kSceneDecoded = 0.4, kReplicaMade = 0.5, kPainterMade = 0.6, kStateDecoded = 1;
+
+/// Returns a function that takes numbers of bytes, `all` of them together, and tells the master the progress from part
+/// `from` to part `to` of the work.
+std::function<void(std::size_t)> told(const lockstep::Cluster& cluster, double from, double to, std::size_t all) {
+    return [&cluster, from, to, all = static_cast<double>(all), done = 0.0](std::size_t bytes) mutable {
+        done += static_cast<double>(bytes);
+        cluster.rankProgress(from + (to - from) * std::min(1.0, done / all));
+    };
+}
+
 /// Session of one tile: its replica, its context and its painter.
 class TileSession {
 public:
@@ -59,12 +72,17 @@ public:
                                    {"sand.frag.glsl", "spoilt on purpose"});
         }
         requireMemory();
-        const scene::Scene scene = scene::Scene::decode(message.scene, scene::Scene::Keep::packedToo);
+        cluster.rankProgress(kContextMade);
+        const scene::Scene scene =
+            scene::Scene::decode(message.scene, scene::Scene::Keep::packedToo,
+                                 told(cluster, kContextMade, kSceneDecoded, message.scene.size()));
         replica_.emplace(scene, executor);
+        cluster.rankProgress(kReplicaMade);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
                          lockstep::hostName(), replica_->surface().data());
+        cluster.rankProgress(kPainterMade);
         if (!message.state.empty()) {  // after the painter, because the painter's box follows from the scene's start
-            replica_->decodeState(message.state);
+            replica_->decodeState(message.state, told(cluster, kPainterMade, kStateDecoded, message.state.size()));
         }
     }
 
@@ -318,6 +336,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const base::Exec
         readiness.error = error.what();
         readiness.mayStillCome = dynamic_cast<const base::NotYetError*>(&error) != nullptr;
     }
+    cluster.rankProgress(kStateDecoded);
     (void)lockstep::gatherReadiness(cluster, readiness);
     if (!lockstep::agreeToGoOn(cluster, false)) {
         return 0;

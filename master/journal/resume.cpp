@@ -37,23 +37,33 @@ void requireHash(sand::Replica& replica, const journal::JournalEnd& recorded, co
     }
 }
 
+/// Returns the part of a journal that `reader` has read. `all` is its allBytes().
+double partRead(const journal::JournalReader& reader, double all) {
+    return std::min(1.0, static_cast<double>(reader.wholeBytes()) / std::max(all, 1.0));
+}
+
 /// Replays the records of a journal, one after another, until a step is reached.
 class Replay {
 public:
     Replay(const fs::path& journal, std::uint64_t step, RestoredSand& restored, const Restoring& how)
-        : journal_(journal), step_(step), replica_(restored.replica), outvoted_(restored.outvoted), how_(how) {}
+        : journal_(journal),
+          step_(step),
+          replica_(restored.replica),
+          outvoted_(restored.outvoted),
+          how_(how),
+          first_(replica_.stepNumber()),
+          bytes_(how.progress ? static_cast<double>(allBytes(journal)) : 0) {}
 
     void run() {
         journal::JournalReader reader = openJournal(journal_);
+        reader_ = &reader;
         while (!(how_.beingWritten && replica_.stepNumber() >= step_) && !beyond_) {
             const auto record = reader.next();
             if (!record) {
                 break;
             }
             std::visit(*this, *record);
-            if (how_.each) {
-                how_.each(replica_.stepNumber());
-            }
+            tell(replica_.stepNumber());
         }
         if (replica_.stepNumber() < step_) {
             throw base::InputError(
@@ -83,9 +93,7 @@ public:
         for (const sand::Step& one : frame.steps) {
             if (one.number == replica_.stepNumber() + 1 && one.number <= step_) {
                 replica_.apply(one);
-                if (how_.each) {
-                    how_.each(one.number);
-                }
+                tell(one.number);
             }
         }
         beyond_ = read_ > step_;
@@ -104,6 +112,16 @@ public:
     void operator()(const journal::JournalForce&) const {}
 
 private:
+    void tell(std::uint64_t step) const {
+        if (how_.each) {
+            how_.each(step);
+        }
+        if (how_.progress) {
+            const auto due = static_cast<double>(step_ - std::min(step_, first_));
+            const double applied = due > 0 ? static_cast<double>(step - std::min(step, first_)) / due : 1;
+            how_.progress((partRead(*reader_, bytes_) + std::min(1.0, applied)) / 2);
+        }
+    }
     void endDoubt(const journal::JournalEnd& sand) {
         requireHash(replica_, sand, journal_);
         outvoted_.reset();
@@ -114,6 +132,9 @@ private:
     sand::Replica& replica_;
     std::optional<Outvoted>& outvoted_;
     const Restoring& how_;
+    const std::uint64_t first_;                       // step of the sand before the replay
+    const double bytes_;                              // of the journal; 0 if nobody asks for the progress
+    const journal::JournalReader* reader_ = nullptr;  // during run()
     std::uint64_t read_ = 0;  // last step of the records so far, which the replica may have had already
     bool beyond_ = false;     // a record behind the step has been read, with the hash after it
 };
@@ -235,7 +256,8 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
     return restored;
 }
 
-std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene) {
+std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene,
+                                          const ResumeProgress& progress) {
     std::error_code none;
     if (!fs::exists(fs::symlink_status(journal, none))) {
         return std::nullopt;
@@ -246,9 +268,13 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     session.scene = journal::sceneOf(reader, scene::Scene::Keep::packedToo);
     session.scene.material = session.material = reader.header().material.value_or(scene::Material());
     Walk walk{session, journal, {}};
+    const auto all = static_cast<double>(allBytes(journal));
     try {
         while (const auto record = reader.next()) {
             std::visit(walk, *record);
+            if (progress.read) {
+                progress.read(partRead(reader, all));
+            }
         }
     } catch (const base::InputError& error) {
         throw base::InputError(
@@ -258,7 +284,8 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     }
     session.place = reader.place();
     session.cutBytes = reader.tornBytes();
-    RestoredSand restored = restoreSand(journal, session.step, {.newestCheckpoint = newestCheckpointFor(walk.doubted)});
+    RestoredSand restored = restoreSand(
+        journal, session.step, {.newestCheckpoint = newestCheckpointFor(walk.doubted), .progress = progress.replayed});
     session.outvoted = restored.outvoted;
     session.hash = restored.replica.stateHash();
     session.state = restored.replica.encodeState();

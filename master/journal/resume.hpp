@@ -39,6 +39,9 @@ struct Restoring {
     bool beingWritten = false;
     // Called after each step and after each record, with the last step; may throw to end the replay.
     std::function<void(std::uint64_t)> each{};
+    // Called after each step and after each record, with the part of the records that are read and of the steps that
+    // are replayed, 0 to 1. A replay that begins again from an earlier checkpoint begins with a smaller part.
+    std::function<void(double)> progress{};
 };
 
 /// A checkpoint of the last steps before a divergence may hold an error that is not in its hash yet: fluxes show in the
@@ -80,9 +83,17 @@ struct ResumedSession {
     std::optional<Outvoted> outvoted;  // if the wall had shown the sand of a wrong majority when the session stopped
 };
 
+/// Functions that readSession() calls with the part of some work that is done, 0 to 1. Each may be empty. A replay that
+/// begins again calls `replayed` with a smaller part.
+struct ResumeProgress {
+    std::function<void(double)> read{};      // reading the records of the journal
+    std::function<void(double)> replayed{};  // replaying the steps of the journal
+};
+
 /// Reads the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
 /// is named, it must describe the session's scene. Throws base::InputError if the session cannot be continued; the text
 /// says what can be done with the journal.
-[[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene);
+[[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
+                                                        const ResumeProgress& progress = {});
 
 }  // namespace master

@@ -16,10 +16,10 @@ constexpr double kAuditSeconds = 1.0;
 
 MasterSand::MasterSand(const sand::Start& start, const base::Executor* executor,
                        const std::vector<lockstep::Fault>& faults, std::span<const std::uint8_t> state,
-                       std::uint64_t edits)
+                       std::uint64_t edits, const std::function<void(std::size_t)>& decoded)
     : replica_(start, executor), faults_(faults, lockstep::kMaster), edits_(edits) {
     if (!state.empty()) {
-        replica_.decodeState(state);
+        replica_.decodeState(state, decoded);
     }
     if (replica_.settling()) {
         settlingSince_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranks that wait for the master's broadcast. The master tells the progress of its work, and may then hang.
+// Ranks that wait for the master's broadcast, and then for each other. All tell their progress, and some hang.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -7,6 +7,27 @@
 #include <thread>
 
 #include "lockstep/cluster.hpp"
+
+namespace {
+
+/// Makes the part of a session of rank `rank`: the last one takes longer than the limit, or hangs.
+void makePart(const lockstep::Cluster& cluster, std::string_view what) {
+    constexpr int kParts = 32;
+    constexpr std::chrono::milliseconds kPart{250};
+    for (int part = 1; what == "slow rank" && cluster.rank() == 2 && part <= kParts; ++part) {
+        std::this_thread::sleep_for(kPart);
+        cluster.rankProgress(static_cast<double>(part) / kParts);
+    }
+    if (what == "hanging rank" && cluster.rank() == 2) {
+        cluster.rankProgress(0.3);
+        std::this_thread::sleep_for(std::chrono::hours(2));
+    }
+    for (int again = 0; again < 1000; ++again) {
+        cluster.rankProgress(1);  // only the first one is sent
+    }
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     const std::string_view what = argc > 1 ? argv[1] : "";
@@ -29,9 +50,16 @@ int main(int argc, char** argv) {
     }
     cluster.awaitBroadcast();
     const base::Bytes sent = cluster.broadcast(cluster.isMaster() ? base::Bytes(3, 7) : base::Bytes());
-    const auto all = cluster.gather(base::Bytes(sent.size()));
+    double made = 0;
+    if (!cluster.isMaster()) {
+        makePart(cluster, what);
+    }
+    const auto all = cluster.gatherReady(base::Bytes(sent.size()), [&made](double share) { made = share; });
+    const bool agreed = cluster.agree(what != "refused");
     if (cluster.isMaster()) {
-        fmt::print("{} ranks, the last has {} bytes\n", cluster.size(), all.back().size());
+        fmt::print("{} ranks, the last has {} bytes; {:.2f} made\n", cluster.size(), all.back().size(), made);
+    } else if (agreed == (what == "refused")) {
+        return 3;
     }
     return 0;
 }

@@ -8,10 +8,10 @@
 namespace {
 
 TEST(Start, RanksTakeTheProgressOfTheMasterBeforeTheBroadcast) {
-    for (const char* what : {"", "'goes back'"}) {
+    for (const char* what : {"", "'goes back'", "refused"}) {
         const support::Ran ran = support::runRanks(3, "start_ranks", what, "vader");
         EXPECT_EQ(ran.status, 0) << ran.output;
-        EXPECT_EQ(ran.output, "3 ranks, the last has 3 bytes\n");
+        EXPECT_EQ(ran.output, "3 ranks, the last has 3 bytes; 1.00 made\n");
     }
 }
 
@@ -23,6 +23,23 @@ TEST(Start, AMasterWhoseWorkGetsNoFurtherIsNamedAfterTheLimit) {
     EXPECT_EQ(ran.status, 1) << ran.output;
     EXPECT_NE(ran.output.find("the start waits for the made-up work for "), std::string::npos) << ran.output;
     EXPECT_NE(ran.output.find("the limit is 3 s, ending the job"), std::string::npos) << ran.output;
+}
+
+// The last rank takes 8 s. Without its progress the master would give up after 3 s, and the first rank after 6 s.
+TEST(Start, NobodyGivesUpWhileARankGetsFurther) {
+    setenv("SANDWALL_START_TIMEOUT", "3", 1);
+    const support::Ran ran = support::runRanks(3, "start_ranks", "'slow rank'", "vader");
+    unsetenv("SANDWALL_START_TIMEOUT");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    EXPECT_NE(ran.output.find("3 ranks, the last has 3 bytes; 1.00 made\n"), std::string::npos) << ran.output;
+}
+
+TEST(Start, ARankThatGetsNoFurtherIsNamedAfterTheLimit) {
+    setenv("SANDWALL_START_TIMEOUT", "1", 1);
+    const support::Ran ran = support::runRanks(3, "start_ranks", "'hanging rank'", "vader");
+    unsetenv("SANDWALL_START_TIMEOUT");
+    EXPECT_EQ(ran.status, 1) << ran.output;
+    EXPECT_NE(ran.output.find("the start waits for rank 2 for "), std::string::npos) << ran.output;
 }
 
 }  // namespace
