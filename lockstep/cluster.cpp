@@ -8,12 +8,15 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <numeric>
 
 #include "host/memory.hpp"
+#include "host/print_line.hpp"
 #include "lockstep/backoff.hpp"
+#include "lockstep/sibling_watch.hpp"
 
 namespace lockstep {
 namespace {
@@ -43,6 +46,11 @@ Cluster::Cluster(int* argc, char*** argv) : rank_(rankOfJob()), phase_(kInit) {
                                            });
     watchdog_->arm();
     int provided = 0;
+    const SiblingWatch siblings([] {  // until gather() has heard of all ranks
+        host::printLine("a process of this job on {} has ended, and mpirun waits for it; ending the job", hostName());
+        std::fflush(nullptr);
+        std::_Exit(1);
+    });
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
