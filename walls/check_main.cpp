@@ -10,7 +10,7 @@
 #include "host/whole_file.hpp"
 #include "walls/check_scene.hpp"
 #include "walls/desk_windows.hpp"
-#include "walls/new_wall.hpp"
+#include "walls/draft/new_wall.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_report.hpp"
 #include "walls/wall_svg.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "walls/new_wall.hpp"
+#include "walls/draft/new_wall.hpp"
 
 #include <fmt/format.h>
 
@@ -11,27 +11,25 @@
 
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
-#include "walls/wall.hpp"
 
 namespace walls {
 namespace {
 
-constexpr int kMostInARow = 32;          // 32 x 32 tiles are kMaxTiles
+constexpr int kMostInARow = 32;          // a wall has at most 1024 tiles
 constexpr glm::dvec2 kTile{1.21, 0.68};  // [m], of a display of 55 inches
 constexpr double kBezel = 0.004;         // [m]
 constexpr double kMiddle = 1.5;          // [m], height of the wall's middle, if its lower edge is above the floor
 constexpr double kFoot = 0.1;            // [m], lowest lower edge
 constexpr double kBefore = 0.25;         // [m], from the wall to the sand's south edge
+constexpr double kMargin = 0.05;         // [share of the wall] around the sand, at least
 
-static_assert(kMostInARow * kMostInARow <= kMaxTiles);
-
-/// Numbers of rows and columns.
-struct Grid {
+/// Numbers of rows and columns of displays.
+struct DisplayGrid {
     int rows = 0, columns = 0;
 };
 
-Grid parseGrid(const std::string& text) {
-    Grid grid;
+DisplayGrid parseGrid(const std::string& text) {
+    DisplayGrid grid;
     const char* const end = text.data() + text.size();
     const auto [cross, first] = std::from_chars(text.data(), end, grid.rows);
     if (first == std::errc() && cross != end && *cross == 'x') {
@@ -47,11 +45,43 @@ Grid parseGrid(const std::string& text) {
 
 double lengthOf(int tiles, double tile) { return tiles * tile + (tiles - 1) * kBezel; }
 
-std::string textOf(const Grid& grid, const std::string& name) {
+/// A wall from its lower edge at `foot` upwards, and an eye before its middle [m].
+struct Front {
+    double width, height, foot, eyeHeight, distance;
+
+    /// Returns the height at which the wall shows a point at the height `y`, `z` before the wall.
+    [[nodiscard]] double shown(double y, double z) const {
+        return eyeHeight + (y - eyeHeight) * distance / (distance - z);
+    }
+};
+
+/// Square table of sand, tilted by 45 degrees, whose south edge is kBefore the wall.
+struct Table {
+    double side, south;  // [m]; height of the south edge
+
+    [[nodiscard]] double half() const { return side / 2 / std::numbers::sqrt2; }  // up, and back
+    [[nodiscard]] bool fits(const Front& wall) const {
+        const double across = side * wall.distance / (wall.distance - kBefore);
+        const double north = wall.shown(south + 2 * half(), kBefore - 2 * half());
+        return across <= (1 - 2 * kMargin) * wall.width && north <= wall.foot + (1 - kMargin) * wall.height;
+    }
+};
+
+/// Returns the largest table that the wall shows whole.
+Table tableOn(const Front& wall) {
+    const double lowest = wall.foot + kMargin * wall.height;
+    Table table{wall.width, wall.eyeHeight + (lowest - wall.eyeHeight) * (wall.distance - kBefore) / wall.distance};
+    while (!table.fits(wall)) {
+        table.side *= 0.98;
+    }
+    return table;
+}
+
+std::string textOf(const DisplayGrid& grid, const std::string& name) {
     const double width = lengthOf(grid.columns, kTile.x), height = lengthOf(grid.rows, kTile.y);
     const double foot = std::max(kFoot, kMiddle - height / 2);
-    // The sand is a square table, tilted by 45 degrees, that fills most of the wall.
-    const double side = std::min(0.87 * width, 1.5 * height), half = side / 2 / std::numbers::sqrt2;
+    const Front wall{width, height, foot, std::max(1.6, foot + height / 2), std::max(2.0, width)};
+    const Table table = tableOn(wall);
     return fmt::format(
         R"(# {0} rows of {1} displays. Change the values to those of your wall, and check them:
 #     scripts/sandwall check FILE
@@ -78,8 +108,8 @@ centre = [0.0, {10:.3f}, {11:.3f}]   # m
 width = {12:.2f}
 tilt_deg = 45
 )",
-        grid.rows, grid.columns, name, std::max(1.6, foot + height / 2), std::max(2.0, width), kTile.x, kTile.y, kBezel,
-        -width / 2, foot, foot + 0.08 * height + half, kBefore - half, side);
+        grid.rows, grid.columns, name, wall.eyeHeight, wall.distance, kTile.x, kTile.y, kBezel, -width / 2, foot,
+        table.south + table.half(), kBefore - table.half(), table.side);
 }
 
 /// Returns a name for the wall that needs no escapes in TOML.

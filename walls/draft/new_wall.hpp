@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to this folder.
 #pragma once
 
 #include <filesystem>
