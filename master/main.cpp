@@ -85,9 +85,7 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
         sessionOpen = true;
         std::exception_ptr failed;
         try {
-            sand.emplace(master::sandOf(options.session, world->scene, [&cluster](double share) {
-                cluster.progress("the sand of the master", share);
-            }));  // while the ranks make theirs
+            sand.emplace(master::sandOf(options.session, world->scene));  // while the ranks make theirs
         } catch (...) {
             failed = std::current_exception();  // the ranks still report whether they are ready
         }

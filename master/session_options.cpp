@@ -2,6 +2,7 @@
 #include "master/session_options.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "master/steps/live_steps.hpp"
 #include "master/steps/recorded_steps.hpp"
@@ -48,20 +49,10 @@ std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::
     return steps;
 }
 
-MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene, const std::function<void(double)>& made) {
+MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene) {
     const ResumedSession* resumed = options.record.resumed.get();
-    if (resumed == nullptr) {
-        return MasterSand(scene, options.executor, faultsOf(options.drills));
-    }
-    const auto all = static_cast<double>(resumed->state.size());
-    double decoded = 0;
-    return MasterSand(scene, options.executor, faultsOf(options.drills), resumed->state, resumed->edits,
-                      [&](std::size_t bytes) {
-                          decoded += static_cast<double>(bytes);
-                          if (made) {
-                              made(decoded / all);
-                          }
-                      });
+    return resumed == nullptr ? MasterSand(sand::Replica(scene, options.executor), faultsOf(options.drills))
+                              : MasterSand(std::move(*resumed->sand), faultsOf(options.drills), resumed->edits);
 }
 
 }  // namespace master

@@ -52,11 +52,9 @@ struct SessionOptions {
 /// Returns `options` adapted to their recording, if there is one.
 [[nodiscard]] SessionOptions completed(SessionOptions options);
 /// Create the parts of a session that its options choose. stepsOf() returns the steps of a hand or of a recording, and
-/// sandOf() the sand of the scene or of the resumed session. `made` is called with the part of the resumed sand that is
-/// decoded, 0 to 1, unless it is empty.
+/// sandOf() the sand of the scene, or the sand of the resumed session, which it takes.
 [[nodiscard]] std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene,
                                                   Edits& edits);
-[[nodiscard]] MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene,
-                                const std::function<void(double)>& made = {});
+[[nodiscard]] MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene);
 
 }  // namespace master

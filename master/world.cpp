@@ -66,7 +66,8 @@ std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, const Memor
     std::optional<ResumedSession> resumed =
         readSession(journal, options.scene,
                     {.read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
-                     .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")});
+                     .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")},
+                    options.session.executor);
     cluster.progressEnds();
     if (!resumed) {
         host::printLine("{}: nothing to resume; the session begins", journal.string());
@@ -282,7 +283,7 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
                      {},
                      session.pointer,
                      sceneName(options),
-                     session.record.resumed ? session.record.resumed->state : base::Bytes()};
+                     session.record.resumed ? session.record.resumed->sand->encodeState() : base::Bytes()};
     for (const Drill& drill : session.drills) {
         world.message.faults.push_back(drill.fault);
     }

@@ -232,7 +232,8 @@ void replayFurther(const fs::path& journal, std::uint64_t step, RestoredSand& re
 
 RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Restoring& how) {
     const journal::JournalReader head = openJournal(journal);
-    const sand::Replica start(journal::sceneOf(head), how.executor);
+    const sand::Replica start = how.start != nullptr ? sand::Replica(*how.start, how.executor)
+                                                     : sand::Replica(journal::sceneOf(head), how.executor);
     const std::int64_t volume = start.volume() + start.outflow();
     for (const std::uint64_t at : checkpointsOf(journal)) {
         if (at > std::min(step, how.newestCheckpoint)) {
@@ -257,7 +258,7 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
 }
 
 std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene,
-                                          const ResumeProgress& progress) {
+                                          const ResumeProgress& progress, const base::Executor* executor) {
     std::error_code none;
     if (!fs::exists(fs::symlink_status(journal, none))) {
         return std::nullopt;
@@ -284,11 +285,14 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     }
     session.place = reader.place();
     session.cutBytes = reader.tornBytes();
-    RestoredSand restored = restoreSand(
-        journal, session.step, {.newestCheckpoint = newestCheckpointFor(walk.doubted), .progress = progress.replayed});
+    RestoredSand restored = restoreSand(journal, session.step,
+                                        {.executor = executor,
+                                         .start = &session.scene,
+                                         .newestCheckpoint = newestCheckpointFor(walk.doubted),
+                                         .progress = progress.replayed});
     session.outvoted = restored.outvoted;
     session.hash = restored.replica.stateHash();
-    session.state = restored.replica.encodeState();
+    session.sand = std::make_shared<sand::Replica>(std::move(restored.replica));
     session.checkpointStep = restored.checkpointStep;
     session.replayedSteps = restored.replayedSteps;
     return session;

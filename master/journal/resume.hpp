@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -33,6 +34,7 @@ struct RestoredSand {
 /// How the sand is computed from a journal.
 struct Restoring {
     const base::Executor* executor = nullptr;  // see sand::Replica
+    const sand::Start* start = nullptr;  // of the journal's session; null: restoreSand() reads it from the journal
     // Uses no checkpoint of a later step.
     std::uint64_t newestCheckpoint = std::numeric_limits<std::uint64_t>::max();
     // Another thread writes the journal. So nothing behind the wanted step is read, because it may be half written.
@@ -74,11 +76,11 @@ struct ResumedSession {
     std::uint64_t frame = 0;      // last frame in the journal
     std::uint32_t epoch = 0;      // last epoch in the journal
     std::uint64_t edits = 0;
-    std::uint64_t lastEdit = 0;        // highest number of an edit in the journal; 0 without edits
-    std::optional<double> forceShare;  // share of the force that an operator has set, 0 to 1; nullopt: none has
-    std::uint64_t step = 0, hash = 0;  // last step, and the state hash after it
-    base::Bytes state;                 // sand::Replica::encodeState() after this step
-    std::int64_t cutBytes = 0;         // [byte], behind the last whole record of the journal; ignored
+    std::uint64_t lastEdit = 0;           // highest number of an edit in the journal; 0 without edits
+    std::optional<double> forceShare;     // share of the force that an operator has set, 0 to 1; nullopt: none has
+    std::uint64_t step = 0, hash = 0;     // last step, and the state hash after it
+    std::shared_ptr<sand::Replica> sand;  // after this step; sandOf() takes it
+    std::int64_t cutBytes = 0;            // [byte], behind the last whole record of the journal; ignored
     std::uint64_t checkpointStep = 0, replayedSteps = 0;
     std::optional<Outvoted> outvoted;  // if the wall had shown the sand of a wrong majority when the session stopped
 };
@@ -92,8 +94,9 @@ struct ResumeProgress {
 
 /// Reads the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
 /// is named, it must describe the session's scene. Throws base::InputError if the session cannot be continued; the text
-/// says what can be done with the journal.
+/// says what can be done with the journal. `executor` is for the replica.
 [[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
-                                                        const ResumeProgress& progress = {});
+                                                        const ResumeProgress& progress = {},
+                                                        const base::Executor* executor = nullptr);
 
 }  // namespace master

@@ -14,13 +14,8 @@ constexpr double kAuditSeconds = 1.0;
 
 }  // namespace
 
-MasterSand::MasterSand(const sand::Start& start, const base::Executor* executor,
-                       const std::vector<lockstep::Fault>& faults, std::span<const std::uint8_t> state,
-                       std::uint64_t edits, const std::function<void(std::size_t)>& decoded)
-    : replica_(start, executor), faults_(faults, lockstep::kMaster), edits_(edits) {
-    if (!state.empty()) {
-        replica_.decodeState(state, decoded);
-    }
+MasterSand::MasterSand(sand::Replica replica, const std::vector<lockstep::Fault>& faults, std::uint64_t edits)
+    : replica_(std::move(replica)), faults_(faults, lockstep::kMaster), edits_(edits) {
     if (replica_.settling()) {
         settlingSince_ = 0;
     }

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,12 +44,9 @@ struct EndedSettle {
 /// The master's own replica of the sand, its state hash, and the faults that drills inject into it. Used by one thread.
 class MasterSand {
 public:
-    /// `executor` is for sand::Replica. `faults` are the faults of all ranks. A resumed session gives its
-    /// `state` and the number of its edits so far, `edits`. `decoded` is called as sand::Replica::decodeState() does.
-    /// Throws base::FormatError if `state` is not a state of this sand.
-    MasterSand(const sand::Start& start, const base::Executor* executor, const std::vector<lockstep::Fault>& faults,
-               std::span<const std::uint8_t> state = {}, std::uint64_t edits = 0,
-               const std::function<void(std::size_t)>& decoded = {});
+    /// `faults` are the faults of all ranks. `edits` is the number of edits that a resumed session had.
+    explicit MasterSand(sand::Replica replica, const std::vector<lockstep::Fault>& faults = {},
+                        std::uint64_t edits = 0);
 
     [[nodiscard]] const sand::Replica& replica() const { return replica_; }
     /// Returns the replica so that it can be healed. Call rehash() after that.

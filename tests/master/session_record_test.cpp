@@ -34,7 +34,7 @@ protected:
     [[nodiscard]] bool has(const char* name) const { return std::filesystem::exists(folder_ / name); }
 
     const scene::Scene scene_ = samples::flatScene(32, 24);
-    master::MasterSand sand_{scene_, {}, {}};
+    master::MasterSand sand_{sand::Replica(scene_)};
     master::FrameClock clock_{60};
     test::NoSteps source_;
     std::uint64_t frame_ = 0;

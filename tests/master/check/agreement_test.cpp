@@ -137,7 +137,7 @@ protected:
     nlohmann::json failure() const { return nlohmann::json::parse(read("failure.json"), nullptr, false); }
 
     const std::uint64_t right_ = sand::Replica(sceneOfRanks()).stateHash();
-    master::MasterSand sand_{sceneOfRanks(), {}, {}};
+    master::MasterSand sand_{sand::Replica(sceneOfRanks())};
     FakeRanks ranks_;
     HealedSteps steps_;
     master::Incidents incidents_;

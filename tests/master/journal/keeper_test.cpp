@@ -279,7 +279,7 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
     const auto resumed = master::readSession(journal(), "");
     ASSERT_TRUE(resumed.has_value());
     EXPECT_EQ(resumed->place.part, 1U);
-    replica_.decodeState(resumed->state);
+    replica_.decodeState(resumed->sand->encodeState());
     begin({.checkpointSeconds = 0, .partBytes = 2000}, &*resumed);
     ASSERT_TRUE(showFrame());
     expectWhole(steps + 1);

@@ -60,7 +60,7 @@ protected:
         ASSERT_EQ(resumed->hash, hashes_[resumed->step]);
         const sand::Replica replica = replica_;
         const std::vector<std::uint64_t> hashes = hashes_;
-        replica_.decodeState(resumed->state);
+        replica_.decodeState(resumed->sand->encodeState());
         hashes_.resize(resumed->step + 1);
         begin({.checkpointSeconds = 0}, &*resumed);
         showFrame();

@@ -83,7 +83,7 @@ TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
     EXPECT_EQ(session->material, scene_.material);
 
     replica_ = sand::Replica(session->scene);
-    replica_.decodeState(session->state);
+    replica_.decodeState(session->sand->encodeState());
     EXPECT_EQ(replica_.stateHash(), hashes_[38]);
     hashes_.resize(38);
     frame_ = session->frame;
@@ -243,7 +243,7 @@ TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOffAlsoAfterASecondResume) {
     const auto torn = master::readSession(journal(), "");
     ASSERT_EQ(torn->step, 40U);
     ASSERT_GT(torn->cutBytes, 0);
-    replica_.decodeState(torn->state);
+    replica_.decodeState(torn->sand->encodeState());
     {
         master::JournalWriter writer(torn->place, "test");
         writer.resume({torn->frame, {torn->step, torn->hash}, torn->cutBytes, "a crash"});

@@ -97,7 +97,7 @@ protected:
 
     scene::Scene scene_;
     walls::Wall wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph_half.toml");
-    master::MasterSand sand_{scene_, {}, {}};
+    master::MasterSand sand_{sand::Replica(scene_)};
     NoSteps source_;
     master::Edits edits_;
     std::vector<sand::Edit> asked_;

@@ -40,7 +40,7 @@ std::vector<ArrivedStep> stepsFrom(std::uint64_t first, std::size_t count, std::
 
 TEST(MasterSand, AppliesTheStepsOfAFrameAndTellsOfEachState) {
     std::mt19937 random(3);
-    master::MasterSand sand(sceneOfTest(), {}, {});
+    master::MasterSand sand{sand::Replica{sceneOfTest()}};
     sand::Replica plain(sceneOfTest());
     EXPECT_EQ(sand.hash(), plain.stateHash());
     Notes notes;
@@ -61,7 +61,7 @@ TEST(MasterSand, InjectsTheFaultsOfTheMasterAlone) {
     Fault others = mine;
     others.rank = 1;
     others.frame = 1;
-    master::MasterSand sand(sceneOfTest(), {}, {mine, others});
+    master::MasterSand sand(sand::Replica{sceneOfTest()}, {mine, others});
     const std::uint64_t right = sand.hash();
     const auto all = static_cast<std::uint32_t>(sand.replica().hashTiles().tileCount());
     Notes notes;
@@ -77,7 +77,7 @@ TEST(MasterSand, GoesOnAfterALoadThatClaimsTooMuch) {
     const base::Bytes dead = hostile_sand::ofDeadVertices(*scene.tin, std::uint64_t{1} << 30);
     const std::string said = test::inTwoGiB([&] {
         Notes notes;
-        master::MasterSand sand(scene, {}, {});
+        master::MasterSand sand{sand::Replica{scene}};
         std::vector<ArrivedStep> steps(2);
         steps[0].step = {.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::loaded(dead)};
         steps[1].step = {.epoch = 1, .number = 2, .engaged = false, .path = {}};
@@ -91,12 +91,12 @@ TEST(MasterSand, GoesOnAfterALoadThatClaimsTooMuch) {
     EXPECT_EQ(said, "done");
 }
 
-TEST(MasterSand, GoesOnFromTheStateOfASessionThatStopped) {
+TEST(MasterSand, GoesOnWithTheSandOfASessionThatStopped) {
     std::mt19937 random(5);
     Notes notes;
-    master::MasterSand before(sceneOfTest(), {}, {});
+    master::MasterSand before{sand::Replica{sceneOfTest()}};
     before.apply(1, stepsFrom(1, 6, random), 0, notes);
-    const master::MasterSand after(sceneOfTest(), {}, {}, before.replica().encodeState(), 4);
+    const master::MasterSand after(before.replica(), {}, 4);
     EXPECT_EQ(after.hash(), before.hash());
     EXPECT_EQ(after.replica().stepNumber(), 6U);
     EXPECT_EQ(after.edits(), 4U);
@@ -104,7 +104,7 @@ TEST(MasterSand, GoesOnFromTheStateOfASessionThatStopped) {
 
 TEST(MasterSand, CountsTheStepsWithARefusedPressAndKnowsTheFirst) {
     Notes notes;
-    master::MasterSand sand(samples::highScene(10), {}, {});
+    master::MasterSand sand{sand::Replica{samples::highScene(10)}};
     EXPECT_EQ(sand.stepsUnplaced(), 0U);
     EXPECT_EQ(sand.firstStepUnplaced(), 0U);
     std::vector<ArrivedStep> steps(3);
@@ -124,7 +124,7 @@ TEST(MasterSand, CountsTheStepsWithARefusedPressAndKnowsTheFirst) {
 // All tiles are hashed again in a second at any frame rate. Every frame hashes some tiles, and none hashes a tile
 // twice.
 TEST(MasterSand, ReadsAllOfItsMemoryAgainInASecond) {
-    const master::MasterSand sand(sceneOfTest(), {}, {});
+    const master::MasterSand sand{sand::Replica{sceneOfTest()}};
     const auto tiles = static_cast<std::uint32_t>(sand.replica().hashTiles().tileCount());
     ASSERT_GT(tiles, 2U);
     for (const int rate : {1, 10, 30, 60}) {
