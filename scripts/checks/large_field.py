@@ -29,7 +29,7 @@ from base import events
 from base.command_line import Parser, at_least
 from job import processes
 from random_kills import Session, Violation, check_end, strike
-from sessions.start_cost import HEADER, make_scene, memory_of
+from sessions.raster_session import HEADER, make_scene, memory_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE = 600  # [s], of a phase on a busy machine

@@ -133,7 +133,7 @@ TEST_F(SceneFile, WithoutARadiusHasAToolThatCanBeSeenAndFollowsTheHand) {
 
 TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
     EXPECT_EQ(complaint("[field]\ncolumns = 3\nrows = 3\n[terrain]\n[tool]\nshape = \"footprint\"\n")
-                  .find("s.toml:5: a footprint of radius 1.33333 is"),
+                  .find("s.toml:5: a footprint of radius 1.3333333333333333 is"),
               0U);
     EXPECT_EQ(complaint(kFlat + "[tool]\nradius = 10\n").find("s.toml:5: a tool of radius 10 is 2560 cells"), 0U);
     EXPECT_EQ(scene::loadScene(write("s.toml", kFlat + "[tool]\nradius = 0.003\n")).warnings.size(), 1U);
