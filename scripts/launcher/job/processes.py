@@ -173,12 +173,13 @@ class Job:
     """The mpirun of a session, in its own process group. It is asked to stop over its standard input.
 
     The output of the job goes to the log if there is one, else to the launcher's output. The job ends when its input ends: at
-    once before its first frame, and in order after it. A guard (job_guard.py) sees to that if the launcher ends.
+    once before its first frame, and in order after it. A guard (job_guard.py) sees to that if the launcher ends. `here` tells
+    whether all ranks run on this machine.
     """
 
     started = 0
 
-    def __init__(self, command, environment, log=None, fresh=False):
+    def __init__(self, command, environment, log=None, fresh=False, here=False):
         Job.started += 1
         self.fresh = fresh  # whether the session has shown no frame before this job
         self.mark = f"{os.getpid()}-{Job.started}-{secrets.token_hex(8)}"  # no other session has it, also in another container
@@ -192,7 +193,7 @@ class Job:
         self.brief = False  # whether the job was asked to stop before its first frame
         self.close_at = None  # time at which the input is closed [s]; only a job that starts ends then
         self.ended_at_start = False  # whether the master has ended because its input was closed
-        self.end_watch = EndWatch(self.process.pid)
+        self.end_watch = EndWatch(self.process.pid, here=here)
         self.job_id = None  # of Open MPI, as soon as a rank on this machine tells it
 
     def ask(self, command):

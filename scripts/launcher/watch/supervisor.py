@@ -15,7 +15,7 @@ from base.command_line import NOT_YET
 from base.console import print_line
 from base.temporary_folder import TemporaryFolder
 from hosts import machine_needs
-from job import job_log, open_mpi
+from job import job_log, open_mpi, rank_hosts
 from job.processes import HapticServer, Input, Job, exit_status
 from watch import failed_processes
 from watch.patience import Patience, Stopped
@@ -208,7 +208,8 @@ class Supervisor:
     def one_try(self, words, log):
         """Runs the job until it ends, and supervises the haptic server meanwhile. Returns the exit status of the job."""
         command, environment = self.start_of(self.hosts.names, self.haptic, words, log)
-        self.job = Job(command, environment, log, fresh=not (self.shown or "--resume" in words))
+        here = all(host == rank_hosts.HERE for host in self.hosts.names)
+        self.job = Job(command, environment, log, fresh=not (self.shown or "--resume" in words), here=here)
         self.input.job = self.job
         self.input.listen()
         while (status := self.job.look(self.stop)) is None:

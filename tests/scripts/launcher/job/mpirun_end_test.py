@@ -102,12 +102,12 @@ class EndWatch(unittest.TestCase):
         self.addCleanup(patched.stop)
         self.watch = mpirun_end.EndWatch(10)
 
-    def show(self, seconds, mpirun="S", ticks=lambda second: 0, rank=None):
+    def show(self, seconds, mpirun="S", ticks=lambda second: 0, rank=None, faults=0):
         """Shows an mpirun in this state for some seconds, with a rank in the state `rank`. ticks(second) is the processor
         time that mpirun has used. Returns the second in which it counts as stuck, or None."""
         for tenth in range(seconds * 10):
             self.now += 0.1
-            self.shown = {10: mpirun_end.Process(mpirun, 1, ticks(tenth / 10))}
+            self.shown = {10: mpirun_end.Process(mpirun, 1, ticks(tenth / 10), faults)}
             if rank:
                 self.shown[11] = mpirun_end.Process(rank, 10, 5)
             if self.watch.stuck(self.now):
@@ -150,6 +150,28 @@ class EndWatch(unittest.TestCase):
     def test_one_that_sleeps_before_its_first_rank_is_stuck_after_two_minutes(self):
         found = self.show(200)
         self.assertTrue(120 <= found <= 122, f"{found} s: it looks twice in a second")
+
+    def test_one_whose_ranks_have_ended_unseen_is_stuck_sooner_than_one_before_them(self):
+        found = self.show(200, faults=9)
+        self.assertTrue(10 <= found <= 11.5, f"{found} s: its ranks may be on other hosts")
+
+    def test_one_whose_ranks_end_in_their_first_instant_here_is_stuck_after_a_second(self):
+        for rank in (None, "R"):
+            with self.subTest(rank):
+                self.watch = mpirun_end.EndWatch(10, here=True)
+                self.assertIsNone(self.show(2, rank=rank))
+                found = self.show(60, faults=9)
+                self.assertTrue(1 <= found <= 1.6, f"{found} s")
+
+    def test_one_here_whose_ranks_have_lived_for_long_is_stuck_after_ten_seconds(self):
+        self.watch = mpirun_end.EndWatch(10, here=True)
+        self.assertIsNone(self.show(4, rank="R"))
+        found = self.show(60, faults=9)
+        self.assertTrue(10 <= found <= 11.5, f"{found} s")
+
+    def test_one_here_before_its_first_rank_is_not_stuck(self):
+        self.watch = mpirun_end.EndWatch(10, here=True)
+        self.assertIsNone(self.show(110))
 
     def test_one_that_has_ended_is_not_stuck(self):
         self.show(1, rank="S")
