@@ -88,7 +88,8 @@ class EndWatch:
             self.seen_from, self.seen_to = self.seen_from or now, now
             return
         own = process(self.pid)
-        self.had_children = self.had_children or (own is not None and own.faults > 0)  # children that ended between two looks
+        # Children may have ended between two looks.
+        self.had_children = self.had_children or (own is not None and own.faults > 0)
         # On a busy machine, mpirun may need long. It then waits for a processor, or has used some time of it.
         done = own and (own.ticks, own.faults)
         sleeps = own is not None and own.state == "S" and done == self.done
