@@ -74,7 +74,7 @@ void Erosion::leaveOutResting(const HeightField& field) {
         return;
     }
     RestingBlocks resting(field, rules_, blockSize_, steep_);
-    swept_.clear();  // its memory serves for the others, because the next sweep sets it
+    swept_.clear();  // holds the other blocks for a moment, because each sweep sets it again
     for (const CellRect& run : active_) {
         if (unwritten(run)) {
             resting.appendOthers(run, swept_);

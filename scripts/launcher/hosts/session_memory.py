@@ -50,7 +50,7 @@ def free_here():
 
 
 def memory_of_files():
-    """Returns the memory of files in this control group that nobody uses [byte]. The system gives it back."""
+    """Returns the memory of unused files in this control group [byte]. The system gives it back."""
     try:
         files = CACHED.search((GROUP / "memory.stat").read_text(encoding="ascii"))
     except (OSError, ValueError):

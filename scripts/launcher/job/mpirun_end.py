@@ -8,7 +8,7 @@ import pathlib
 STUCK_SECONDS = 10  # far longer than mpirun needs to end, because it counts only while mpirun sleeps
 START_SECONDS = 120  # for mpirun to start its first process; it sleeps while it waits for daemons on other hosts
 LOOK_SECONDS = 0.5
-# mpirun may not notice that a process has ended in its first instant, and then it sleeps for ever. Such a job has shown nothing.
+# mpirun may not notice that a process has ended in its first instant, and then sleeps without an end. Such a job has shown nothing.
 BRIEF_LIFE = 3  # [s] for which its processes were seen, at most
 BRIEF_SECONDS = 1  # in place of STUCK_SECONDS, if all processes run on this machine: mpirun then waits for no other host
 BRIEF_LOOK_SECONDS = 0.2
@@ -16,12 +16,15 @@ BRIEF_LOOK_SECONDS = 0.2
 
 @dataclasses.dataclass
 class Process:
-    """A line of /proc/PID/stat: the state as in proc(5), the parent's id, the processor time in ticks, and the page faults of children that have ended."""
+    """A line of /proc/PID/stat: the state as in proc(5), the parent's id, and the processor time in ticks.
+
+    `faults` are the page faults of all children that have ended and for which the process has waited.
+    """
 
     state: str
     parent: int
     ticks: int
-    faults: int = 0  # not 0 as soon as the process has waited for a child that has ended
+    faults: int = 0
 
     def runs(self):
         return self.state not in "ZX"
@@ -30,7 +33,7 @@ class Process:
 def process(pid):
     """Returns the Process, or None if it does not exist."""
     try:
-        # The name of the program stands in parentheses and may itself hold spaces and parentheses.
+        # The program's name is in parentheses, and may itself have spaces and parentheses.
         fields = pathlib.Path("/proc", str(pid), "stat").read_text(errors="replace").rpartition(")")[2].split()
         return Process(fields[0], int(fields[1]), int(fields[11]) + int(fields[12]), int(fields[8]))
     except (OSError, IndexError, ValueError):
@@ -49,7 +52,7 @@ class EndWatch:
     """Watches an mpirun for the deadlock that Open MPI 4.1 sometimes has when it ends after a rank has failed.
 
     The thread that frees PMIx then waits for another one, which waits for a lock of the first. All ranks have ended, and
-    mpirun sleeps for ever. An mpirun that could not write its temporary files may sleep before its first rank, without an end.
+    mpirun sleeps without an end. An mpirun that could not write its temporary files may sleep before its first rank, without an end.
     `here` tells whether all ranks run on this machine.
     """
 
@@ -59,7 +62,7 @@ class EndWatch:
         self.child = None  # one of the running children, so that the others are looked for only after its end
         self.had_children = False
         self.seen_from = self.seen_to = None  # times at which a child was seen first and last [s]
-        self.done = None  # what mpirun and its children have done so far
+        self.done = None  # ticks and faults of mpirun at the last look
         self.since = None  # time since which mpirun has slept without children [s]
 
     def stuck(self, now):
