@@ -51,6 +51,31 @@ API int sw_dig_scene(const char* name, std::uint32_t high, std::uint32_t low) {
                      high, low);
     });
 }
+/// Begins on the sand with which the session that is dug now began.
+API int sw_dig_again(std::uint32_t high, std::uint32_t low) {
+    return digs.guarded([=] { return begin(digs.dug->scene(), high, low); });
+}
+/// Begins to continue with a journal of this page, whose parts were added. sw_return_on() computes its steps.
+API int sw_return(const char* name) {
+    return digs.guarded([=] {
+        digs.show(std::make_unique<web::DugSession>(
+            web::openedJournal(name, std::exchange(digs.parts, {}), SANDWALL_RELEASE_NAME, web::Exported::kMemory),
+            SANDWALL_RELEASE_NAME));
+        return 0;
+    });
+}
+/// Puts the state in sw_room_for_state() in the place of all steps up to `step`. `high` and `low` are the two halves of
+/// the state hash there.
+API int sw_return_from(double step, std::uint32_t high, std::uint32_t low) {
+    return digs.guarded([=] {
+        digs.dug->returnFrom({static_cast<std::uint64_t>(step), std::uint64_t{high} << 32 | low}, digs.bytes);
+        return 0;
+    });
+}
+/// Takes the next record of the journal to continue with. Returns 1, or 0 behind the last one.
+API int sw_return_on() {
+    return digs.guarded([] { return digs.dug->returnOn() ? 1 : 0; });
+}
 /// Begins on an ESRI ASCII grid, whose text was added as a part.
 API int sw_dig_grid(const char* name, std::uint32_t high, std::uint32_t low) {
     return digs.guarded([=] {
@@ -127,3 +152,12 @@ API int sw_journal() {
         return static_cast<int>(digs.bytes.size());
     });
 }
+/// Returns the length of the journal so far [byte], without an end. Later steps change no byte of it.
+API int sw_written() { return static_cast<int>(digs.dug->written().size()); }
+API const std::uint8_t* sw_written_bytes() { return digs.dug->written().data(); }
+/// Returns how many steps the hand or an edit has changed.
+API double sw_touched() { return static_cast<double>(digs.dug->touched()); }
+/// Returns 1 if the scene's sand has been changed.
+API int sw_dug() { return digs.dug->dug() ? 1 : 0; }
+/// Returns 1 if the next step changes nothing but its number.
+API int sw_rests() { return digs.dug->rests() ? 1 : 0; }

@@ -22,7 +22,7 @@ export function launch(name, { webgl = true, prefs = {} } = {}) {
 
 /** Serves the page with a session, or without one. Returns its address and a function that ends the server. */
 export async function serve(session) {
-    const server = spawn("python3", [`${root}scripts/sandwall`, "web", ...(session ? [session] : [])], { stdio: ["ignore", "pipe", "inherit"] });
+    const server = spawn("python3", [`${root}scripts/sandwall`, "web", "--port", "0", ...(session ? [session] : [])], { stdio: ["ignore", "pipe", "inherit"] });
     const address = await new Promise((resolve, reject) => {
         server.stdout.once("data", (line) => resolve(String(line).trim()));
         server.once("exit", () => reject(new Error("sandwall web has ended")));

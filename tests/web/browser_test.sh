@@ -57,4 +57,5 @@ fi
 if [[ $browser == chromium ]]; then
     node tests/web/no_picture_test.mjs "$folder/gis_tin.journal"
     node tests/web/touch_in_browser.mjs "$folder/gis_tin.journal"
+    node tests/web/kept_in_browser.mjs
 fi

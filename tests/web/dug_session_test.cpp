@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
 #include "base/input_error.hpp"
 #include "journal/journal.hpp"
 #include "journal/memory_parts.hpp"
+#include "journal/memory_writer.hpp"
 #include "journal/verification.hpp"
 #include "tests/support/sand/sand_samples.hpp"
 
@@ -69,6 +71,7 @@ protected:
 
     std::unique_ptr<web::DugSession> session_;
     std::int64_t now_ = kStepNs;
+    std::uint64_t hash_ = 0;  // of a replay
 };
 
 /// Each step of its tool owes 150 sweeps.
@@ -115,6 +118,122 @@ TEST_F(Dug, GoesOnAfterItsJournalWasTaken) {
     std::uint64_t hash = 0;
     EXPECT_EQ(replayed(hash).differing, 0U);
     EXPECT_EQ(steps().size(), 10U);
+}
+
+/// Returns a session that continues with `journal`, before its steps are computed.
+std::unique_ptr<web::DugSession> returning(base::Bytes journal) {
+    std::vector<base::Bytes> parts;
+    parts.push_back(std::move(journal));
+    return std::make_unique<web::DugSession>(
+        journal::JournalReader(std::make_unique<journal::MemoryParts>("KEPT", std::move(parts)), "1.2.3"), "1.2.3");
+}
+void returnAll(web::DugSession& session) {
+    while (session.returnOn()) {
+    }
+}
+
+TEST_F(Dug, ContinuesWithAKeptJournal) {
+    stroke(20);
+    session_->setNumber("humidity", 0.5);
+    session_->setTool({.kind = sand::ToolKind::ellipse, .heading = 30});
+    session_->ask(sand::Edit::settle);
+    advance(4);
+    stroke(10);
+    const std::uint64_t hash = session_->replica().stateHash();
+    auto kept = returning(session_->written());
+    returnAll(*kept);
+    EXPECT_EQ(kept->replica().stateHash(), hash);
+    EXPECT_EQ(kept->shortcoming(), "");
+    EXPECT_EQ(kept->written(), session_->written());
+    EXPECT_EQ(kept->touched(), session_->touched());
+    EXPECT_EQ(kept->material().humidity, 0.5);
+    EXPECT_EQ(kept->material().toolKind, sand::ToolKind::ellipse);
+    session_ = std::move(kept);  // the same hand continues, and a native program replays all of it
+    session_->ask(sand::Edit::undo);
+    advance(2);
+    EXPECT_FALSE(session_->replica().canUndo());
+    stroke(10);
+    EXPECT_EQ(replayed(hash_).differing, 0U);
+    EXPECT_EQ(hash_, session_->replica().stateHash());
+    EXPECT_EQ(replayed(hash_).leftOut, 0U);
+}
+
+TEST_F(Dug, LiftsTheToolOfAKeptStrokeFirst) {
+    for (int i = 0; i < 10; ++i) {
+        point(20 + i, 30, true);
+        (void)session_->advance();
+    }
+    ASSERT_TRUE(session_->replica().engaged());
+    session_ = returning(session_->written());
+    returnAll(*session_);
+    EXPECT_TRUE(session_->replica().engaged());
+    point(50, 50, false);
+    advance(3);
+    EXPECT_FALSE(session_->replica().engaged());
+    EXPECT_EQ(steps().at(10).path.size(), 0U) << "a furrow from the kept stroke to the pointer";
+    EXPECT_EQ(replayed(hash_).differing, 0U);
+}
+
+TEST_F(Dug, ContinuesFromAKeptState) {
+    stroke(20);
+    const journal::JournalEnd at{session_->replica().stepNumber(), session_->replica().stateHash()};
+    const base::Bytes state = session_->replica().encodeState();
+    stroke(10);
+    auto kept = returning(session_->written());
+    kept->returnFrom(at, state);
+    returnAll(*kept);
+    EXPECT_EQ(kept->replica().stateHash(), session_->replica().stateHash());
+    EXPECT_EQ(kept->written(), session_->written());
+
+    auto damaged = returning(session_->written());
+    base::Bytes broken = state;
+    broken.resize(broken.size() / 2);
+    damaged->returnFrom(at, broken);
+    EXPECT_ANY_THROW(returnAll(*damaged));
+    auto other = returning(session_->written());
+    other->returnFrom({at.step, at.hash + 1}, state);
+    EXPECT_ANY_THROW(returnAll(*other));
+    auto later = returning(session_->written());
+    later->returnFrom({at.step + 100, at.hash}, state);
+    EXPECT_ANY_THROW(returnAll(*later));
+}
+
+TEST_F(Dug, ContinuesUpToTheDamageOfAKeptJournal) {
+    stroke(20);
+    base::Bytes bytes = session_->written();
+    bytes.at(bytes.size() * 9 / 10) ^= 1;
+    auto kept = returning(bytes);
+    returnAll(*kept);
+    EXPECT_NE(kept->shortcoming(), "");
+    EXPECT_GT(kept->replica().stepNumber(), 2U);
+    EXPECT_LT(kept->replica().stepNumber(), 20U);
+    EXPECT_TRUE(std::equal(kept->written().begin(), kept->written().end(), session_->written().begin()));
+}
+
+TEST_F(Dug, RefusesToContinueWithASessionOfAWall) {
+    journal::MemoryWriter writer(session_->scene(), 7, "wall", "1.2.3");
+    writer.add(journal::JournalResumed{});
+    auto kept = returning(writer.bytes());
+    EXPECT_ANY_THROW(returnAll(*kept));
+}
+
+TEST_F(Dug, CountsWhatTheHandHasDone) {
+    EXPECT_TRUE(session_->rests() || session_->replica().stepNumber() == 0);
+    advance(3);
+    EXPECT_TRUE(session_->rests());
+    EXPECT_EQ(session_->touched(), 0U);
+    session_->setTool({.radius = 5});
+    EXPECT_FALSE(session_->rests());
+    advance(2);
+    EXPECT_EQ(session_->touched(), 1U);
+    EXPECT_FALSE(session_->dug()) << "a tool is no sand";
+    stroke(5);
+    EXPECT_TRUE(session_->dug());
+    EXPECT_GT(session_->touched(), 3U);
+    const std::uint64_t touched = session_->touched();
+    advance(200);
+    EXPECT_EQ(session_->touched(), touched);
+    EXPECT_TRUE(session_->rests());
 }
 
 TEST_F(DugSlowly, SpreadsItsSweepsInPartsOf64AndHoldsTheTool) {

@@ -38,7 +38,7 @@ const of = (id) => elements.get(id), offered = (id) => of(id).options.map(({ val
 
 /** Returns a panel that has begun with these words, and what it tells. */
 function begun(words, material) {
-    const told = [], panel = new DigPanel((message) => told.push(message), () => {});
+    const told = [], panel = new DigPanel((message) => told.push(message), () => {}, () => told.push({ edit: "reset" }));
     panel.begin({ ...loaded.session, words });
     panel.showMaterial({ kind: "material", ...material });
     return { panel, told };

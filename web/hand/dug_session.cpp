@@ -3,15 +3,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "web/replica/opening.hpp"
 
 namespace web {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
+
+/// Error for a journal whose records are whole and which no hand can continue with.
+class Foreign : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
 
 /// Returns the warnings about a scene in one line.
 std::string inOneLine(const std::vector<std::string>& warnings) {
@@ -34,6 +43,80 @@ DugSession::DugSession(scene::Scene scene, std::uint64_t session, std::string_vi
       budget_(haptic_bridge::Pace::fast, kSecond / scene_.rules.stepsPerSecond),
       journal_(scene_, session, "web page", release),
       depth_(haptic_bridge::PointerHand::kUsualDepth) {}
+
+DugSession::DugSession(journal::JournalReader reader, std::string_view release)
+    : DugSession(sceneWithMaterial(reader), reader.header().session, release) {
+    returning_.emplace(Returning{std::move(reader), {}, {}});
+}
+
+void DugSession::returnFrom(const journal::JournalEnd& sand, base::Bytes state) {
+    returning_->from = sand;
+    returning_->state = std::move(state);
+}
+
+bool DugSession::returnOn() {
+    try {
+        if (const auto record = returning_->reader.next()) {
+            take(*record);
+            return true;
+        }
+        if (const std::int64_t torn = returning_->reader.tornBytes(); torn > 0) {
+            shortcoming_ = fmt::format("The last {} bytes are an incomplete write and were left out", torn);
+        }
+    } catch (const base::InputError& error) {
+        if (returning_->steps == 0) {
+            throw;
+        }
+        shortcoming_ = error.what();
+    }
+    endReturn();
+    return false;
+}
+
+void DugSession::take(const journal::JournalRecord& record) {
+    if (const auto* const frame = std::get_if<journal::JournalFrame>(&record)) {
+        take(*frame);
+    } else if (const auto* const material = std::get_if<scene::Material>(&record)) {
+        material_ = *material;
+        journal_.add(record);
+    } else if (!std::holds_alternative<journal::JournalEnd>(record)) {
+        throw Foreign(returning_->reader.place().journal + ": is a session of a wall; a page only shows it");
+    }
+}
+
+void DugSession::take(const journal::JournalFrame& frame) {
+    const std::uint64_t from = returning_->from.step;
+    if (frame.steps.empty() || frame.steps.front().number > from) {
+        requireHash(frame.hashBefore);
+    }
+    for (const sand::Step& step : frame.steps) {
+        if (step.number > from) {
+            replica_.apply(step);
+        } else if (step.number == from) {
+            replica_.decodeState(returning_->state);
+            requireHash(returning_->from.hash);
+        }
+        count(step);
+        returning_->steps = step.number;
+    }
+    journal_.add(frame);
+}
+
+void DugSession::requireHash(std::uint64_t hash) {
+    if (replica_.stateHash() != hash) {
+        throw Foreign(fmt::format("{}: its sand of step {} cannot be computed again",
+                                  returning_->reader.place().journal, replica_.stepNumber()));
+    }
+}
+
+void DugSession::endReturn() {
+    if (replica_.stepNumber() != returning_->steps) {
+        throw Foreign(fmt::format("{}: ends at step {}, before its kept state of step {}",
+                                  returning_->reader.place().journal, returning_->steps, returning_->from.step));
+    }
+    returning_.reset();
+    hand_.begin(replica_);
+}
 
 void DugSession::point(std::int64_t readNs, const haptic_bridge::Ray& sight, bool pressed) {
     if (pressed && !pressed_) {
@@ -111,6 +194,13 @@ sand::Step DugSession::nextStep() {
     return step;
 }
 
+void DugSession::count(const sand::Step& step) {
+    const bool edited = step.edit.any();
+    touchedSteps_ += step.engaged || edited ? 1 : 0;
+    dug_ = dug_ || step.engaged || (edited && step.edit.kind != sand::Edit::tune);
+    lastEdit_ = std::max(lastEdit_, step.edit.number);
+}
+
 void DugSession::write(const sand::Step& step) {
     if (step.edit.any() && asked_.front().material) {
         journal_.add(*asked_.front().material);
@@ -121,6 +211,7 @@ void DugSession::write(const sand::Step& step) {
 bool DugSession::advance() {
     const sand::Step step = nextStep();
     write(step);
+    count(step);
     if (step.edit.any()) {
         asked_.pop_front();
     }

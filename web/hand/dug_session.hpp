@@ -13,6 +13,7 @@
 #include "haptic_bridge/hand/sweep_budget.hpp"
 #include "haptic_bridge/hand/touched_sand.hpp"
 #include "journal/memory_writer.hpp"
+#include "journal/reader.hpp"
 #include "web/replica/step_source.hpp"
 
 namespace web {
@@ -26,6 +27,8 @@ public:
 
     /// Begins on the sand of `scene`. `session` is a random number for the journal, and `release` is this program's.
     DugSession(scene::Scene scene, std::uint64_t session, std::string_view release);
+    /// Begins to continue with a journal that a page has written. returnOn() computes its steps before any other step.
+    DugSession(journal::JournalReader reader, std::string_view release);
 
     [[nodiscard]] const scene::Scene& scene() const override { return scene_; }
     [[nodiscard]] sand::Replica& replica() override { return replica_; }
@@ -47,12 +50,31 @@ public:
     /// Returns the material with all changes that were asked for.
     [[nodiscard]] const scene::Material& material() const { return material_; }
 
-    /// Applies the next step. Returns whether the picture may have changed.
+    /// Takes the next record of the journal to continue with. Returns false behind the last whole one; the hand can dig
+    /// then, and shortcoming() says what is missing. Throws base::InputError if the journal's sand is not this sand, or
+    /// if no page has written it.
+    bool returnOn();
+    /// Puts `state`, which Replica::encodeState() wrote, in the place of all steps up to `sand`. Call it before
+    /// returnOn(), which then throws base::InputError if the state is not that of `sand`.
+    void returnFrom(const journal::JournalEnd& sand, base::Bytes state);
+
+    /// Applies the next step, behind all records of returnOn(). Returns whether the picture may have changed.
     bool advance();
     /// Returns whether the next step brings all sand to rest at once, which takes long.
     [[nodiscard]] bool settlesNext() const;
     /// Returns the journal of all steps so far, with an orderly end.
     [[nodiscard]] base::Bytes journal();
+    /// Returns the journal of all steps so far. Later steps add bytes at its end and change no others.
+    [[nodiscard]] const base::Bytes& written() const { return journal_.bytes(); }
+
+    /// Returns how many steps the hand or an edit has changed. All other steps follow from them.
+    [[nodiscard]] std::uint64_t touched() const { return touchedSteps_; }
+    /// Returns whether the hand, or an edit of the sand, has changed the scene's sand.
+    [[nodiscard]] bool dug() const { return dug_; }
+    /// Returns whether the next step changes nothing but its number.
+    [[nodiscard]] bool rests() const {
+        return !pressed_ && reports_.empty() && asked_.empty() && replica_.atRest() && !replica_.engaged();
+    }
 
 private:
     struct Asked {
@@ -64,6 +86,18 @@ private:
     void takePointer();
     [[nodiscard]] sand::Step nextStep();
     void write(const sand::Step& step);
+    void count(const sand::Step& step);
+    /// Journal to continue with, while its steps are computed.
+    struct Returning {
+        journal::JournalReader reader;
+        journal::JournalEnd from;  // at which `state` is; step 0 if there is none
+        base::Bytes state;
+        std::uint64_t steps = 0;  // that were taken
+    };
+    void take(const journal::JournalRecord& record);
+    void take(const journal::JournalFrame& frame);
+    void requireHash(std::uint64_t hash);
+    void endReturn();
 
     scene::Scene scene_;
     scene::MaterialGrid grid_;
@@ -80,6 +114,9 @@ private:
     double depth_;
     std::deque<Asked> asked_;
     std::uint64_t lastEdit_ = 0;
+    std::uint64_t touchedSteps_ = 0;
+    bool dug_ = false;
+    std::optional<Returning> returning_;
 };
 
 }  // namespace web

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's hand as the source of steps. A step is due whenever the time of one has passed, as in a session. Its sweeps
 // are spread, so the worker answers between two steps.
+import type { Keeper } from "../kept/keeper";
 import type { ToWorker } from "../replica/messages";
 import type { Replica } from "../replica/replica";
 import { kSliceMs, type Stage, type StepSource } from "../replica/step_source";
 
+const kMostResting = 600;  // steps without any change, after which the hand waits for the page
 const kMostDue = 4;        // steps. A slow browser leaves out the rest, and so does a slow wall
 const kProgressMs = 100;
 const kLongMs = 100;       // a step that takes longer is felt
@@ -16,15 +18,19 @@ export class HandSource implements StepSource {
     private told = -kProgressMs;
     private toldStep = -1;
     private longest = 0;           // ms, of a step since the message before
+    private resting = 0;           // steps
+    private pressed = false;
 
-    constructor(private readonly replica: Replica, private readonly stepsPerSecond: number, private readonly stage: Stage) {
+    constructor(private readonly replica: Replica, private readonly stepsPerSecond: number, private readonly stage: Stage, private readonly keeper: Keeper) {
         this.tellMaterial();
     }
 
     take(message: ToWorker): void {
+        this.resting = 0;
         try {
             if ("hand" in message) {
                 this.replica.point(message.hand);
+                this.pressed = message.hand.at(-1) === 1;
             } else if ("edit" in message) {
                 this.replica.ask(message.edit);
             } else if ("tool" in message) {
@@ -33,8 +39,11 @@ export class HandSource implements StepSource {
                 this.replica.setMaterial(message.material, message.value);
             } else if ("depth" in message) {
                 this.replica.setDepth(message.depth);
+            } else if ("keep" in message) {
+                this.keeper.hurry();
             } else if ("save" in message) {
                 const bytes = this.replica.journal();
+                this.keeper.save(this.replica);
                 this.stage.tell({ kind: "journal", name: "session.journal", bytes }, [bytes]);
             }
         } catch (error) {
@@ -61,7 +70,8 @@ export class HandSource implements StepSource {
             this.tellStep(this.longest >= kLongMs ? `A step of this sand takes ${Math.round(this.longest)} ms; the page waits for it.` : "");
             this.longest = 0;
         }
-        return Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
+        this.keeper.work(this.replica, this.pressed);
+        return this.resting > kMostResting ? undefined : Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
     }
 
     private step(): void {
@@ -69,6 +79,7 @@ export class HandSource implements StepSource {
             this.tellStep("All sand settles; the page waits for it.");
         }
         const before = performance.now();
+        this.resting = this.replica.rests ? this.resting + 1 : 0;
         this.changed = this.replica.digOn() || this.changed;
         this.longest = Math.max(this.longest, performance.now() - before);
     }

@@ -16,10 +16,12 @@ export class DigPanel {
     private material?: MaterialMessage;
     private limits = { least: 0, most: Infinity };  // radius, scene unit
 
-    /** `tell` passes a message on to the hand, and `open` opens the scene of that name. */
-    constructor(private readonly tell: (message: ToHand) => void, open: (scene: string) => void) {
+    /**
+     * `tell` passes a message on to the hand. `open` opens new sand of the scene of that name, and `again` that of the present
+     * scene. The sand before is kept, as an edit would not keep it.
+     */
+    constructor(private readonly tell: (message: ToHand) => void, open: (scene: string) => void, private readonly again: () => void) {
         choice("scene").append(...SCENES.map((name) => new Option(name)));
-        choice("scene").value = "writing";
         element("dig").onclick = () => open(choice("scene").value);
         choice("tool").onchange = () => this.change("kind", choice("tool").value);
         element("larger").onclick = () => this.resize(kWider);
@@ -34,6 +36,13 @@ export class DigPanel {
         choice("word").onchange = () => this.showNumber();
         input("number").onchange = () => this.whenNumber("number", (value) => tell({ material: choice("word").value, value }));
         element("save").onclick = () => tell({ save: true });
+    }
+
+    /** The scene that the list says. */
+    set scene(name: string) {
+        if (SCENES.includes(name)) {
+            choice("scene").value = name;
+        }
     }
 
     private change(part: keyof Tool, value: string | number): void { this.tell({ tool: part, value: String(value) }); }
@@ -57,7 +66,7 @@ export class DigPanel {
         choice("tool").replaceChildren(...words.tools.map((name) => new Option(name)));
         choice("word").replaceChildren(...words.material.map(({ word }) => new Option(word)));
         for (const edit of words.edits) {
-            (document.getElementById(edit) ?? this.added(edit)).onclick = () => this.tell({ edit });
+            (document.getElementById(edit) ?? this.added(edit)).onclick = edit === "reset" ? () => this.again() : () => this.tell({ edit });
         }
         showOthers("words", words, ["tools", "material", "edits"]);
     }
@@ -74,6 +83,7 @@ export class DigPanel {
             if (!this.words) {
                 this.offer(sand.words);
             }
+            this.scene = sand.name;
             this.limits = { least: kShortest * sand.cell / 2, most: kLongest * Math.min(sand.columns, sand.rows) * sand.cell / 2 };
             input("depth").value = "0.5";
             element<HTMLButtonElement>("undo").disabled = true;

@@ -56,7 +56,9 @@ function beginSand(opened: SandMessage, address = ""): void {
     sand = opened;
     begun = false;
     document.title = `${opened.name} – Sandwall`;
-    delete document.body.dataset.problem;
+    for (const old of ["problem", "shown", "step", "hash"]) {
+        delete document.body.dataset[old];
+    }
     cutButton.disabled = !opened.hasHeights;
     cutButton.setAttribute("aria-pressed", "false");
     results.begin(opened, address);
@@ -101,13 +103,14 @@ worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
 // A worker that could not be loaded sends an event without a message.
 worker.onerror = ({ message }) => problem(message ? `The page's worker has failed: ${message}` : "worker.js cannot be loaded; put all files of the page on the server");
 
-openDroppedFiles({ tell, problem });
+const opener = { tell, problem, mayLeave: () => dig.mayLeave() };
+openDroppedFiles(opener);
 const named = query.get("journal"), scene = query.get("dig");
 if (scene !== null) {
-    void dig.open(scene);
+    dig.start(scene, true);
 } else if (named !== null) {
     say.textContent = `Fetching ${named}`;
-    fetchJournal(named, { tell, problem }).catch((error: Error) => problem(`${named}: cannot be fetched (${error.message})`));
+    fetchJournal(named, opener).catch((error: Error) => problem(`${named}: cannot be fetched (${error.message})`));
 } else if (noPicture !== "") {
     say.textContent = noPicture;
 }

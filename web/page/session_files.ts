@@ -7,13 +7,15 @@ import { fetchSandwallFile } from "./fetched";
 export interface Opener {
     tell(message: ToWorker, buffers?: Transferable[]): void;
     problem(text: string): void;
+    /** Asks before sand is left that is not kept. */
+    mayLeave(): boolean;
 }
 
 /** Returns the number of a part: 1 for session.journal, 2 for session.journal.2. */
 const partOf = (name: string) => Number(/\.journal\.(\d+)$/.exec(name)?.[1] ?? 1);
 
 async function openFiles(files: File[], page: Opener): Promise<void> {
-    if (files.length === 0) {
+    if (files.length === 0 || !page.mayLeave()) {
         return;
     }
     const grid = files.find((file) => !/\.journal(\.\d+)?$/.test(file.name) && /\.(asc|txt|grd)$/i.test(file.name));

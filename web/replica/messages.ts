@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What page and worker tell each other. All buffers are transferred.
 
+import type { Keeping } from "../kept/keeper";
+import type { KeptSession } from "../kept/kept_sand";
+
 export const kUnitsPerCell = 65536;  // units of height
 
 export interface OpenMessage {
@@ -9,11 +12,17 @@ export interface OpenMessage {
     parts: ArrayBuffer[];
 }
 
-/** Sand to dig in: a scene that was encoded natively, or a file with an ESRI ASCII grid. */
+/** New sand to dig in: a scene that was encoded natively, or a file with an ESRI ASCII grid. */
 export interface DigMessage {
     name: string;
-    scene?: ArrayBuffer;
     file?: Blob;
+}
+
+/** Sand with which the page begins: the newest that is kept, or new sand of `scene`. */
+export interface StartMessage {
+    scene: string;
+    only: boolean;             // goes on only with sand of `scene`
+    mine: string;              // session that this tab had before; empty if none
 }
 
 /** What a hand can choose (web/words.cpp). */
@@ -41,12 +50,17 @@ export type ToHand =
     | { tool: string; value: string }       // a part of the tool
     | { material: string; value: number }   // an operator's word, such as "talus"
     | { depth: number }                     // of the tool, in radii
-    | { save: true };
+    | { save: true }
+    | { keep: true };                       // at once, because the page may be closed
 
 export type ToWorker =
     | ToHand
     | { open: OpenMessage }
     | { dig: DigMessage }
+    | { start: StartMessage }
+    | { again: true }      // new sand of the scene that is dug
+    | { goOn: string }     // session that is kept
+    | { forget: string }   // session that is kept
     | { seek: number }
     | { play: number }     // steps per second; negative: backwards; 0: stop
     | { shown: true };     // the page has drawn a frame, and may get the next
@@ -71,10 +85,31 @@ export interface SessionMessage extends SandMessage {
     marks: { step: number; what: string }[];  // strokes, resumes, and edits by their names
 }
 
-/** The page can dig now. */
+/** The page can dig now, or when the kept sand has been computed. */
 export interface DigBegunMessage extends SandMessage {
     kind: "dig";
     words: Words;
+    since?: number;            // when the kept sand was dug last [ms since 1970]; absent if it is new
+    note: string;              // why it is not the sand that was asked for; empty if it is
+}
+
+/** The hand can dig. If the sand was kept, it is that of this step. */
+export interface HandMessage {
+    kind: "hand";
+    step: number;
+    hash: string;
+}
+
+/** How well the sand is kept that is dug. */
+export interface KeepingMessage extends Keeping {
+    kind: "keeping";
+}
+
+/** The sessions that this browser keeps, the newest first, and the one that is dug. */
+export interface SessionsMessage {
+    kind: "sessions";
+    sessions: KeptSession[];
+    current: string;
 }
 
 /** The material that was asked for, in the units of a scene file. */
@@ -139,5 +174,5 @@ export interface ProblemMessage {
     text: string;
 }
 
-export type FromHand = DigBegunMessage | MaterialMessage | DugMessage | JournalMessage | NoteMessage;
+export type FromHand = DigBegunMessage | MaterialMessage | DugMessage | JournalMessage | NoteMessage | HandMessage | KeepingMessage | SessionsMessage;
 export type FromWorker = SessionMessage | FrameMessage | ProgressMessage | ProblemMessage | FromHand;

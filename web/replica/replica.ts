@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The replica's C functions (replica.cpp) as a class.
 
+import type { KeptState } from "../kept/kept_sand";
 import { kReadingNumbers, type Piece, type Words } from "./messages";
 
 type Module = Record<string, any>;
@@ -100,6 +101,23 @@ export class Replica {
         this.add([bytes]);
         this.withText(name, (at) => isScene ? this.wasm._sw_dig_scene(at, high, low) : this.wasm._sw_dig_grid(at, high, low));
     }
+    /** Begins anew on the sand with which the session that is dug now began. */
+    digAgain(): void {
+        const [high, low] = crypto.getRandomValues(new Uint32Array(2));
+        this.require(this.wasm._sw_dig_again(high, low));
+    }
+    /** Begins to go on with a kept journal, from a kept state if there is one. returnOn() computes its steps. */
+    return(name: string, bytes: ArrayBuffer, state?: KeptState): void {
+        this.add([bytes]);
+        this.withText(name, (at) => this.wasm._sw_return(at));
+        if (state) {
+            const at = this.room(this.wasm._sw_room_for_state(state.bytes.byteLength));
+            this.wasm.HEAPU8.set(new Uint8Array(state.bytes), at);
+            this.require(this.wasm._sw_return_from(state.step, parseInt(state.hash.slice(0, 8), 16), parseInt(state.hash.slice(8), 16)));
+        }
+    }
+    /** Takes the next record. Returns false behind the last one, and throws if no hand can go on. */
+    returnOn(): boolean { return this.require(this.wasm._sw_return_on()) === 1; }
     /** Checks the header of a grid, of which all has `size` bytes. */
     checkGrid(name: string, first: ArrayBuffer, size: number): void {
         this.add([first]);
@@ -120,6 +138,23 @@ export class Replica {
     setMaterial(word: string, value: number): void { this.withText(word, (at) => this.wasm._sw_set_material(at, value)); }
     setTool(part: string, value: string): void {
         this.withText(value, (to) => this.withText(part, (at) => this.wasm._sw_set_tool(at, to)));
+    }
+    /** How many steps the hand or an edit has changed. */
+    get touched(): number { return this.wasm._sw_touched(); }
+    /** Whether the scene's sand has been changed. */
+    get dug(): boolean { return this.wasm._sw_dug() === 1; }
+    /** Whether the next step changes nothing. */
+    get rests(): boolean { return this.wasm._sw_rests() === 1; }
+    /** The length of the journal so far, without an end. */
+    get written(): number { return this.wasm._sw_written(); }
+    journalFrom(offset: number): ArrayBuffer {
+        const at = this.wasm._sw_written_bytes();
+        return this.wasm.HEAPU8.slice(at + offset, at + this.written).buffer;
+    }
+    /** Returns whether the journal begins with these bytes. */
+    beginsWith(bytes: ArrayBuffer): boolean {
+        const at = this.wasm._sw_written_bytes(), ours = this.wasm.HEAPU8.subarray(at, at + this.written) as Uint8Array, others = new Uint8Array(bytes);
+        return others.length <= ours.length && others.every((byte, i) => byte === ours[i]);
     }
     journal(): ArrayBuffer {
         const length = this.require(this.wasm._sw_journal());

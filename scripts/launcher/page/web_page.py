@@ -15,6 +15,7 @@ from base.command_line import at_least
 from page import web_files
 
 HOST = "127.0.0.1"
+USUAL_PORT = 7263  # a browser keeps the sand of each address, so this is the same each time; the letters S A N D of a telephone
 # The policy of index.html. A worker obeys only that of its own file, so every answer has it.
 POLICY = ("default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; "
           "img-src data:")
@@ -183,11 +184,19 @@ def page_folder():
     return folder
 
 
+def server_at(port, page, journal):
+    """Returns a server at `port`; if that is None, at USUAL_PORT, or at a free port if another program has it."""
+    if port is None:
+        with contextlib.suppress(OSError):
+            return Server(USUAL_PORT, page, journal)
+    return Server(port or 0, page, journal)
+
+
 def serve(args):
     journal = None if args.session is None else web_files.Journal(args.session)
     page = web_files.Page(page_folder())
     try:
-        server = Server(args.port, page, journal)
+        server = server_at(args.port, page, journal)
     except (OSError, OverflowError) as error:
         raise BadInput(f"port {args.port}: cannot be used ({getattr(error, 'strerror', None) or error}); choose another --port") from error
     with server:
@@ -205,4 +214,5 @@ def add_parser(commands):
                                   description="Serves the web page on this machine alone, and prints its address; docs/web.md.")
     command.set_defaults(run=serve)
     command.add_argument("session", metavar="SESSION", nargs="?", help="session's folder, or its session.journal")
-    command.add_argument("--port", type=at_least(int, 0), default=0, help="port of the page (default: a free one)")
+    command.add_argument("--port", type=at_least(int, 0), default=None,
+                         help=f"port of the page (default: {USUAL_PORT}, at which a browser finds the sand that it keeps; 0: a free one)")

@@ -208,6 +208,20 @@ class WebPage(unittest.TestCase):
                     break
             self.assertTrue(ended, begin)
 
+    def test_the_usual_port_is_used_unless_another_program_has_it(self):
+        page = web_files.Page(self.page)
+        self.addCleanup(setattr, web_page, "USUAL_PORT", web_page.USUAL_PORT)
+        web_page.USUAL_PORT = self.server.server_port  # taken
+        for port in (None, 0):
+            with web_page.server_at(port, page, None) as other:
+                self.assertNotIn(other.server_port, (0, web_page.USUAL_PORT))
+                free = other.server_port
+        web_page.USUAL_PORT = free
+        with web_page.server_at(None, page, None) as usual:
+            self.assertEqual(usual.server_port, free)
+        with self.assertRaises(OSError):
+            web_page.server_at(self.server.server_port, page, None)
+
     def test_at_port_80_a_browser_leaves_out_the_port(self):
         self.assertEqual(web_page.names_of(80), {"127.0.0.1", "127.0.0.1:80", "localhost", "localhost:80"})
         self.assertEqual(self.answer("/", host="localhost")[0], 403)

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// Begins with sand in the worker: of a journal, of a scene or grid, or of a session that the browser keeps.
+import { HandSource } from "../hand/hand_source";
+import { Keeper } from "../kept/keeper";
+import { KeptSand, type KeptSession, type KeptState } from "../kept/kept_sand";
+import { JournalSource } from "../replica/journal_source";
+import { Keyframes } from "../replica/keyframes";
+import type { DigMessage, OpenMessage, StartMessage, ToWorker } from "../replica/messages";
+import type { Replica } from "../replica/replica";
+import { kSliceMs, type Stage, type StepSource } from "../replica/step_source";
+import { fetchSandwallFile } from "./fetched";
+
+const kReturnMs = 500;  // between two notes about sand that is computed again
+
+/** What beginnings use of the worker. */
+export interface BeginningStage extends Stage {
+    /** Other sand is shown from now on. Its steps come from `next`; without it, nothing works. */
+    begin(next?: StepSource): void;
+    loaded(): Promise<Replica>;
+}
+
+function newSession(name: string): KeptSession {
+    const id = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+    return { id, name, began: Date.now(), changed: Date.now(), seconds: 0 };
+}
+async function sceneNamed(name: string): Promise<ArrayBuffer> {
+    const fetched = await fetchSandwallFile(new URL(`${encodeURIComponent(name)}.scene`, self.location.href)).catch(({ message }: Error) => ({ why: message }));
+    if ("why" in fetched) {
+        throw new Error(`${name}: cannot be fetched (${fetched.why}); build the page again`);
+    }
+    return fetched.bytes;
+}
+
+export class Beginnings {
+    private keyframes = new Keyframes();
+    private keeper?: Keeper;              // of the session that is dug
+    private letGo?: () => void;           // gives its lock back
+    private current = "";                 // its id
+    private beginnings = 0;               // that the page has asked for
+    private readonly keeping = KeptSand.open().then((data) => ({ data, why: "" }), (error: Error) => ({ data: undefined, why: error.message }));
+
+    constructor(private readonly stage: BeginningStage) {}
+
+    /** Returns how to begin as a message asks, or undefined if it asks for something else. */
+    take(message: ToWorker): (() => Promise<void>) | undefined {
+        const beginning = this.beginningOf(message);
+        this.beginnings += beginning ? 1 : 0;
+        return beginning;
+    }
+    private beginningOf(message: ToWorker): (() => Promise<void>) | undefined {
+        if ("open" in message) {
+            return () => this.open(message.open);
+        } else if ("dig" in message) {
+            return () => this.dig(message.dig);
+        } else if ("start" in message) {
+            return () => this.startWith(message.start);
+        } else if ("again" in message) {
+            return () => this.again();
+        } else if ("goOn" in message) {
+            return () => this.goOnWith(message.goOn);
+        } else if ("forget" in message) {
+            return () => this.forget(message.forget);
+        }
+        return undefined;
+    }
+
+    /** Keeps the newest sand of the present session, as far as the browser does. */
+    private async flush(): Promise<void> { await this.keeper?.flush(await this.stage.loaded()); }
+    /** Ends the session, because the replica has other sand. */
+    private end(): void {
+        this.keeper?.end();
+        this.keeper = undefined;
+        this.letGo?.();
+        this.letGo = undefined;
+        this.stage.begin();
+    }
+
+    private async open({ name, address, parts }: OpenMessage): Promise<void> {
+        const it = await this.stage.loaded();
+        await this.flush();
+        it.open(name, parts);
+        this.end();
+        const opened = it.session();
+        this.stage.begin(new JournalSource(it, opened, this.keyframes, this.stage));
+        this.stage.tell({ kind: "session", address, ...opened });
+    }
+
+    /** Tells the page about the sand that the replica has now. */
+    private tellDig(it: Replica, note: string, since?: number): number {
+        this.keyframes = new Keyframes();  // digging needs no memory for states
+        const begun = it.session();
+        this.stage.tell({ kind: "dig", ...begun, words: it.words, since, note });
+        return begun.stepsPerSecond;
+    }
+    /** Lets the hand dig in the sand of a session. */
+    private async beginHand(it: Replica, session: KeptSession, stepsPerSecond: number, bytes?: ArrayBuffer): Promise<void> {
+        const { data, why } = await this.keeping;
+        this.letGo ??= await data?.hold(session.id);
+        this.keeper = new Keeper(data, why, session, stepsPerSecond, (now) => {
+            this.stage.tell({ kind: "keeping", ...now });
+            if (now.kept.step > 0) {
+                void this.tellSessions();
+            }
+        });
+        if (bytes) {
+            this.keeper.goOn(it, bytes);
+        }
+        this.stage.begin(new HandSource(it, stepsPerSecond, this.stage, this.keeper));
+        this.stage.tell({ kind: "hand", step: it.step, hash: it.hash });
+        this.current = session.id;
+        await this.tellSessions();
+    }
+    private async tellSessions(): Promise<void> {
+        const { data } = await this.keeping;
+        try {
+            this.stage.tell({ kind: "sessions", sessions: (await data?.list()) ?? [], current: this.current });
+        } catch {
+            // The browser has closed the database. The next piece says so.
+        }
+    }
+
+    /** Begins with new sand. */
+    private async dig({ name, file }: DigMessage, note = "", scene = file ? undefined : sceneNamed(name)): Promise<void> {
+        const it = await this.stage.loaded();
+        if (file) {
+            // The header says whether the sand fits, before all of a large file is read.
+            it.checkGrid(name, await file.slice(0, 1 << 16).arrayBuffer(), file.size);
+        }
+        const bytes = await (scene ?? file!.arrayBuffer());
+        await this.flush();
+        it.dig(name, bytes, scene !== undefined);
+        this.end();
+        await this.beginHand(it, newSession(it.session().name), this.tellDig(it, note));
+    }
+    private async again(): Promise<void> {
+        const it = await this.stage.loaded();
+        await this.flush();
+        it.digAgain();
+        this.end();
+        await this.beginHand(it, newSession(it.session().name), this.tellDig(it, ""));
+    }
+
+    /** Computes the sand of a kept journal in slices. */
+    private async compute(it: Replica, { name, seconds }: KeptSession, stepsPerSecond: number): Promise<void> {
+        const mine = this.beginnings;
+        for (let told = performance.now(); ; ) {
+            const began = performance.now();
+            while (performance.now() - began < kSliceMs) {
+                if (!it.returnOn()) {
+                    return;
+                }
+            }
+            if (began - told > kReturnMs) {
+                told = began;
+                this.stage.tell({ kind: "note", text: `Computing your sand of ${name} again: ${Math.floor(it.step / stepsPerSecond)} of ${seconds} s.` });
+            }
+            await new Promise((resolve) => setTimeout(resolve));
+            if (mine !== this.beginnings) {
+                throw new Error("Other sand was chosen.");
+            }
+        }
+    }
+    /** Goes on with a kept session. Throws a sentence if another tab has it, or if it cannot be read. */
+    private async goOn(session: KeptSession): Promise<void> {
+        const it = await this.stage.loaded(), data = (await this.keeping).data!, { id, name, changed } = session;
+        const held = await data.hold(id);
+        if (!held) {
+            throw new Error(`Another tab digs in the kept sand of ${name}.`);
+        }
+        let stepsPerSecond = 0;
+        const from = async (bytes: ArrayBuffer, state?: KeptState) => {
+            it.return(name, bytes.slice(0), state);
+            this.end();
+            stepsPerSecond = this.tellDig(it, "", changed);
+            this.stage.show();  // the sand of the scene, of which the page makes the box and the difference to the start
+            await this.compute(it, session, stepsPerSecond);
+        };
+        let bytes: ArrayBuffer;
+        try {
+            const { bytes: kept, state } = await data.read(id);
+            bytes = kept;
+            await this.flush();
+            await from(bytes, state).catch((error) => (state ? from(bytes) : Promise.reject(error)));  // a state may be damaged
+        } catch (error) {
+            held();
+            throw error;
+        }
+        const shortcoming = it.session().shortcoming;
+        if (shortcoming === "") {
+            this.letGo = held;
+            await this.beginHand(it, session, stepsPerSecond, bytes);
+        } else {
+            held();
+            await this.beginHand(it, newSession(name), stepsPerSecond);
+            this.stage.tell({ kind: "note", text: `The kept sand of ${name} continues up to here, as a session of its own: ${shortcoming}.` });
+        }
+    }
+    /** Begins with the newest kept sand, or with new sand. */
+    private async startWith({ scene, only, mine }: StartMessage): Promise<void> {
+        const fetched = sceneNamed(scene);
+        fetched.catch(() => {});  // it may not be needed
+        let note = "";
+        try {
+            const listed = ((await (await this.keeping).data?.list()) ?? []).filter(({ name }) => !only || name === scene);
+            const newest = listed.find(({ id }) => id === mine) ?? listed[0];
+            if (newest) {
+                return await this.goOn(newest);
+            }
+        } catch (error) {
+            note = `${(error as Error).message.replace(/\.?$/, ".")} This tab has new sand, and the other stays.`;
+        }
+        await this.dig({ name: scene }, note, fetched);
+    }
+    private async goOnWith(id: string): Promise<void> {
+        const session = (await (await this.keeping).data?.list())?.find((listed) => listed.id === id);
+        if (!session || (id === this.current && this.keeper)) {
+            return;
+        }
+        try {
+            await this.goOn(session);
+        } catch (error) {
+            if (!this.keeper) {  // the session before is gone, but what it had is kept
+                const it = await this.stage.loaded();
+                it.digAgain();
+                await this.beginHand(it, newSession(session.name), this.tellDig(it, ""));
+            }
+            throw error;
+        }
+    }
+    private async forget(id: string): Promise<void> {
+        if (!(await (await this.keeping).data?.remove(id))) {
+            throw new Error("A tab digs in this sand, so it stays.");
+        }
+        await this.tellSessions();
+    }
+}

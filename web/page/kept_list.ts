@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sessions that this browser keeps, as a list, and the question before sand is left that it does not keep.
+import { timeOf } from "../kept/keeper";
+import type { KeepingMessage, SessionsMessage, ToWorker } from "../replica/messages";
+
+const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
+const list = element<HTMLSelectElement>("kept"), goOn = element<HTMLButtonElement>("goOn"), forget = element<HTMLButtonElement>("forget"), say = element("say");
+const kMine = "sandwall session";  // key of the session that this tab had last
+
+export class KeptList {
+    private unkept = false;
+    private why = "";       // why sand is not kept; empty if it is
+
+    constructor(tell: (message: ToWorker) => void) {
+        goOn.onclick = () => this.mayLeave() && tell({ goOn: list.value });
+        forget.onclick = () => {
+            if (confirm(`Remove the kept sand ${list.selectedOptions[0].text}? It cannot be brought back.`)) {
+                tell({ forget: list.value });
+            }
+        };
+        addEventListener("beforeunload", (event) => {
+            if (this.unkept) {
+                event.preventDefault();
+            }
+        });
+        document.addEventListener("visibilitychange", () => tell({ keep: true }));
+    }
+
+    /** Other sand has begun. */
+    begin(): void {
+        this.unkept = false;
+        this.why = "";
+        Object.assign(document.body.dataset, { unkept: false, keptStep: 0 });
+        delete document.body.dataset.keptHash;
+    }
+    showKeeping({ id, unkept, why, kept, gone }: KeepingMessage): void {
+        this.unkept = unkept;
+        Object.assign(document.body.dataset, { unkept, keptStep: kept.step, keptHash: kept.hash });
+        const sentences = [...gone];
+        if (unkept && why !== "" && why !== this.why) {
+            sentences.push(`This browser does not keep this sand: ${why}. Save the session before you leave.`);
+        }
+        this.why = unkept ? why : "";
+        if (sentences.length > 0) {
+            say.textContent = sentences.join(" ");
+        }
+        try {
+            sessionStorage.setItem(kMine, id);
+        } catch {
+            // Without it a reload continues with the newest session.
+        }
+    }
+    /** The session of this tab before a reload; empty if there was none. */
+    get mine(): string {
+        try {
+            return sessionStorage.getItem(kMine) ?? "";
+        } catch {
+            return "";
+        }
+    }
+    show({ sessions, current }: SessionsMessage): void {
+        const chosen = list.value;
+        list.replaceChildren(...sessions.map(({ id, name, changed, seconds }) => {
+            const mark = id === current ? ", this sand" : "";
+            return new Option(`${name}, ${timeOf(changed)}, ${seconds} s${mark}`, id);
+        }));
+        if (sessions.some(({ id }) => id === chosen)) {
+            list.value = chosen;
+        }
+        list.disabled = goOn.disabled = forget.disabled = sessions.length === 0;
+        document.body.dataset.keptSessions = String(sessions.length);
+    }
+
+    /** Asks before sand is left that is not kept. Returns whether it may be. */
+    mayLeave(): boolean {
+        return !this.unkept || confirm("This sand is not kept, and would be lost. Leave it?");
+    }
+}
