@@ -6,10 +6,8 @@ import { basename, join } from "node:path";
 
 const out = process.argv[2];
 await build({
-    entryPoints: ["page/page.ts", "page/worker.ts"], outdir: out, bundle: true, minify: true, format: "esm", target: "es2022",
+    entryPoints: ["page/page.ts", "page/worker.ts", "page/page.css"], outdir: out, bundle: true, minify: true, format: "esm", target: "es2022",
     define: { SCENES: JSON.stringify(readdirSync("../scenes").filter((name) => name.endsWith(".toml")).map((name) => basename(name, ".toml")).sort()) },
-    loader: { ".glsl": "text" }, external: ["./replica.mjs"], legalComments: "linked", logLevel: "warning",
+    loader: { ".glsl": "text", ".webp": "dataurl" }, external: ["./replica.mjs"], legalComments: "linked", logLevel: "warning",
 });
-for (const name of ["index.html", "page.css"]) {
-    copyFileSync(join("page", name), join(out, name));
-}
+copyFileSync("page/index.html", join(out, "index.html"));

@@ -142,6 +142,8 @@ API int sw_set_tool(const char* part, const char* value) {
 API const char* sw_words() { return digs.textAt(web::wordsOfPage()); }
 /// Returns the material with all changes that were asked for, as JSON (web::materialText()).
 API const char* sw_material() { return digs.textAt(web::materialText(digs.dug->material())); }
+/// Returns the material of the scene, as JSON.
+API const char* sw_scene_material() { return digs.textAt(web::materialText(digs.dug->scene().material)); }
 /// Returns 1 if the last stroke can be undone.
 API int sw_can_undo() { return digs.dug->replica().surface().hasKept() ? 1 : 0; }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -35,6 +36,7 @@ struct Exported {
     Piece piece;                          // of the drawing, for the page
     PageSession* recorded = nullptr;      // the session, if its steps are those of a journal
     DugSession* dug = nullptr;            // the session, if its steps are those of a hand
+    std::array<double, 4> place{};        // of the sand that sw_look() has met
     base::Bytes bytes;                    // a state or a journal
     std::string problem;                  // sentence for the user
     std::string text;                     // text that the page reads next

@@ -91,6 +91,26 @@ API int sw_step_on() {
 API int sw_step() { return static_cast<int>(session->replica().stepNumber()); }
 API int sw_matches() { return static_cast<int>(page.recorded->matches()); }
 API int sw_mismatches() { return static_cast<int>(page.recorded->mismatches()); }
+/// Looks from an eye along the direction of its sight [cell]. Returns 1 if it meets the sand, or else 0. The numbers of
+/// the place are at sw_place(): x and y [cell], height [scene unit, as the scene's terrain has it], height [cell].
+API int sw_look(double fromX, double fromY, double fromZ, double alongX, double alongY, double alongZ) {
+    return guarded([=] {
+        const sand::Replica& replica = session->replica();
+        const sand::HeightSpan units = replica.surface().heights();
+        const haptic_bridge::TouchedSand touched;
+        const auto place = touched.meet({{fromX, fromY, fromZ}, {alongX, alongY, alongZ}}, false, replica,
+                                        {units.lowest / sand::kUnitsPerCell, units.highest / sand::kUnitsPerCell});
+        if (place) {
+            const double height =
+                touched.height(replica, false, place->x * sand::kProbePerCell, place->y * sand::kProbePerCell) /
+                sand::kUnitsPerCell;
+            page.place = {place->x, place->y, height * replica.cellSize() + session->scene().georeference.datum,
+                          height};
+        }
+        return place ? 1 : 0;
+    });
+}
+API const double* sw_place() { return page.place.data(); }
 API const char* sw_hash() { return page.textAt(fmt::format("{:016x}", session->replica().stateHash())); }
 
 /// Encodes the whole state. Returns its length [byte]; the bytes are at sw_state_bytes().

@@ -49,3 +49,12 @@ export async function passed(page, patience = 240_000) {
     await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
     return page.evaluate(() => ({ ...document.body.dataset }));
 }
+
+/** Presses a control of the drawer as a person does, and closes the drawer again. */
+export async function press(page, id) {
+    await page.click("#more");
+    await page.click(id);
+    if (await page.$eval("#more", (more) => more.getAttribute("aria-expanded") === "true")) {
+        await page.click("#more");
+    }
+}

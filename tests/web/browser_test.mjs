@@ -6,7 +6,7 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
-import { complaintsOf, launch, passed, serve } from "./browser.mjs";
+import { complaintsOf, launch, passed, press, serve } from "./browser.mjs";
 
 const [name, folder, list, smoke] = process.argv.slice(2);
 const sessions = fs.readFileSync(list, "utf8").trim().split("\n").map((line) => line.split(" ")).filter(([file]) => !smoke || /^(gis_tin|every_tool)/.test(file));
@@ -42,9 +42,9 @@ async function cutAndFill(page) {
         return;
     }
     const plain = await picture();
-    await page.click("#cut");
+    await press(page, "#cut");
     assert.notEqual(await picture(), plain, "cut and fill shows nothing");
-    await page.click("#cut");
+    await press(page, "#cut");
     assert.equal(await picture(), plain, "cut and fill stays");
 }
 

@@ -57,5 +57,6 @@ fi
 if [[ $browser == chromium ]]; then
     node tests/web/no_picture_test.mjs "$folder/gis_tin.journal"
     node tests/web/touch_in_browser.mjs "$folder/gis_tin.journal"
+    node tests/web/page_in_browser.mjs
     node tests/web/kept_in_browser.mjs
 fi

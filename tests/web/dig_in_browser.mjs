@@ -5,7 +5,7 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
-import { complaintsOf, launch, serve } from "./browser.mjs";
+import { complaintsOf, launch, press, serve } from "./browser.mjs";
 
 const [name, scene, given, picture] = process.argv.slice(2);
 const folder = path.resolve(given), journal = path.join(folder, "session.journal");
@@ -50,13 +50,15 @@ async function setNumber(id, value) {
 try {
     await page.setViewport({ width: 800, height: 560 });
     await page.goto(address);
+    await until("document.body.dataset.hand === 'yes' && document.body.dataset.shown");
     if (scene.endsWith(".asc")) {
         await (await page.$("#files")).uploadFile(path.resolve(scene));
     } else {
         await page.select("#scene", scene);
-        await page.click("#dig");
+        await press(page, "#dig");
     }
-    await until("document.body.dataset.problem || (document.body.dataset.digging && document.body.dataset.shown)");
+    const sand = path.basename(scene, ".asc");
+    await until(`document.body.dataset.problem || (document.body.dataset.digging === "${sand}" && document.body.dataset.hand === "yes" && document.body.dataset.shown)`);
     assert.equal((await data()).problem, undefined);
     assert.equal(await page.$eval("#undo", (button) => button.disabled), true, "there is no stroke yet");
     const tools = await page.$$eval("#tool option", (options) => options.map(({ value }) => value));
@@ -78,14 +80,15 @@ try {
     await setNumber("#number", 0.5);
     await page.select("#tool", "sphere");
     await stroke([[0.35, 0.25], [0.5, 0.75], [0.65, 0.25]]);
-    await page.click("#settle");
+    await press(page, "#settle");
     await steps(5);
-    // Nothing can be undone after a reset. The right button turns the view, and digs nothing: there is no stroke to undo.
+    // Nothing can be undone in new sand. The right button turns the view, and digs nothing: there is no stroke to undo.
     const canUndo = () => page.$eval("#undo", (button) => !button.disabled);
     assert.ok(await canUndo(), "a stroke can be undone");
-    await page.click("#reset");
+    await press(page, "#reset");
     await steps(20);
-    assert.equal(await canUndo(), false, "a reset cannot be undone");
+    await until("document.body.dataset.hand === 'yes' && document.body.dataset.shown");
+    assert.equal(await canUndo(), false, "new sand has no stroke");
     const before = await data();
     await page.mouse.move(300, 150);
     await page.mouse.down({ button: "right" });
@@ -98,7 +101,7 @@ try {
     if (picture) {
         await page.screenshot({ path: picture });
     }
-    await page.click("#save");
+    await press(page, "#save");
     for (let waited = 0; !(fs.existsSync(journal) && fs.statSync(journal).size > 0); waited += 100) {
         assert.ok(waited < kPatienceMs, "the journal is not saved");
         await new Promise((resolve) => setTimeout(resolve, 100));

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
-import { complaintsOf, launch, serve } from "./browser.mjs";
+import { complaintsOf, launch, press, serve } from "./browser.mjs";
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "kept-")), grid = path.join(folder, "flat.asc");
 fs.writeFileSync(grid, `ncols 60\nnrows 60\nxllcorner 4000\nyllcorner 5000\ncellsize 1\n${"0 ".repeat(3600)}\n`);
@@ -77,7 +77,7 @@ try {
             to.oncomplete = () => { request.result.close(); resolve(); };
         };
     }));
-    await first.click("#reset");
+    await press(first, "#reset");
     await until(first, "document.body.dataset.keptStep === '0'");
     await digs(first, "flat");
     await stroke(first, 0.5);
@@ -89,7 +89,7 @@ try {
     // Another session of the list continues.
     const other = await first.$$eval("#kept option", (options) => options.at(-1).value);
     await first.select("#kept", other);
-    await first.click("#goOn");
+    await press(first, "#goOn");
     await until(first, "document.body.dataset.keptStep !== '0' && document.body.dataset.hand === 'yes' && document.body.dataset.step > 2");
     await until(first, "/^This is your sand of /.test(document.getElementById('say').textContent)");
 
@@ -106,7 +106,7 @@ try {
     await digs(first, "stroke");
     const damaged = await first.$$eval("#kept option", (options) => options[0].value);
     await first.select("#kept", damaged);
-    await first.click("#goOn");
+    await press(first, "#goOn");
     await until(first, "document.body.dataset.problem");
     assert.match((await data(first)).problem, /not a Sandwall journal file/);
     assert.equal((await data(first)).keptSessions, "10", "the damaged session stays");
@@ -131,7 +131,7 @@ try {
     await stroke(private_, 0.4);
     await until(private_, "/does not keep this sand: its storage is full/.test(document.getElementById('say').textContent)");
     agree = false;
-    await private_.click("#reset");
+    await press(private_, "#reset");
     assert.match(dialogs.at(-1), /^confirm: This sand is not kept/);
     assert.equal((await data(private_)).unkept, "true", "the sand stays");
     void private_.reload().catch(() => {});

@@ -30,7 +30,7 @@ for (const [, id] of html.matchAll(/ id="(\w+)"/g)) {
 }
 Object.assign(globalThis, {
     SCENES: ["writing"],
-    Option: class { constructor(name) { this.value = name; } },
+    Option: class { constructor(text, value = text) { Object.assign(this, { text, value }); } },
     document: { body: new Control(), createElement: () => new Control(), getElementById: (id) => elements.get(id) ?? null },
 });
 const { DigPanel } = await builtModule("page/dig_panel.ts");
@@ -39,7 +39,7 @@ const of = (id) => elements.get(id), offered = (id) => of(id).options.map(({ val
 /** Returns a panel that has begun with these words, and what it tells. */
 function begun(words, material) {
     const told = [], panel = new DigPanel((message) => told.push(message), () => {}, () => told.push({ edit: "reset" }));
-    panel.begin({ ...loaded.session, words });
+    panel.begin({ ...loaded.session, words, sceneMaterial: material });
     panel.showMaterial({ kind: "material", ...material });
     return { panel, told };
 }

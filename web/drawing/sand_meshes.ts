@@ -7,7 +7,7 @@ import {
 import type { Piece, SandMessage } from "../replica/messages";
 import { SandPrograms } from "./sand_programs";
 
-const kTray = 0.46;  // [m], longer side of the field, as on the desktop wall
+export const kTray = 0.46;  // [m], longer side of the field, as on the desktop wall
 
 function grainTexture(grain: Uint8Array): DataTexture {
     const levels: { data: Uint8Array; width: number; height: number }[] = [];

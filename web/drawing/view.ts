@@ -3,7 +3,7 @@
 import { Color, LinearSRGBColorSpace, Matrix4, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import type { FrameMessage, SandMessage } from "../replica/messages";
 import { Eye } from "./eye";
-import { SandMeshes } from "./sand_meshes";
+import { kTray, SandMeshes } from "./sand_meshes";
 
 export class View {
     readonly eye: Eye;
@@ -43,7 +43,7 @@ export class View {
         this.meshes = new SandMeshes(this.scene, session);
         const [red, green, blue] = frame.pieces.find((piece) => piece.background)!.background;
         this.scene.background = new Color().setRGB(red, green, blue, LinearSRGBColorSpace);
-        this.eye.begin();
+        this.eye.begin(kTray * Math.min(1, session.columns / session.rows), kTray * Math.min(1, session.rows / session.columns));
         this.show(frame);
     }
     /** Returns whether a frame of this sand was the last one. */
@@ -55,6 +55,14 @@ export class View {
     set cutAndFill(on: boolean) {
         this.meshes!.programs.set("uCutAndFill", on ? 1 : 0);
         this.dirty = true;
+    }
+
+    /** Whether sand is drawn. */
+    get ready(): boolean { return this.meshes !== undefined; }
+    /** Goes near to a place of the sand [cell]. */
+    goNear(x: number, y: number, height: number): void {
+        const { cell } = this.session!;
+        this.eye.goNear(new Vector3(x * cell, y * cell, height * cell).applyMatrix4(this.meshes!.sceneToRoom));
     }
 
     /** The eye, and the direction of its sight through a place in the window [CSS pixel], both in cells of the field. */

@@ -9,9 +9,14 @@ const kNear = 4;            // CSS pixels
 // time at which it came to rest would put the places far apart in time, and the hand would lift the tool.
 const kMotionMs = 8;
 // The fingers of two do not touch the screen at once. So a finger digs when no second one has come in this time, or when
-// it has moved so far.
+// it has moved so far. A mouse and a pen dig at once when they move; a click waits for a second one.
 const kSecondFingerMs = 100;
-const kFarPixels = 10;
+const kFarPixels = 10, kFarPixelsOfMouse = 3;
+const kHeldMs = 200;        // a mouse that is pressed so long without a motion digs
+const kDoubleMs = 280, kDoublePixels = 24;  // between two taps or clicks that go near
+
+/** The distance of two events in the window. */
+const far = (a: PointerEvent, b: PointerEvent) => Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
 
 interface Reading {
     ms: number;
@@ -23,11 +28,12 @@ interface Reading {
 export class DigPointer {
     private before?: Reading;
     private pressedBy?: number;  // pointerId
-    private waiting?: { event: PointerEvent; timer: number };  // for a second finger
+    private waiting?: { event: PointerEvent; timer: number };  // for a second finger or a motion
+    private tapped?: { event: PointerEvent; timer: number };   // a tap that waits for a second one
 
-    /** `send` gets the readings of an event, in the order of time. */
+    /** `send` gets the readings of an event, in the order of time. `near` gets the place of a double tap or click. */
     constructor(private readonly canvas: HTMLCanvasElement, private readonly view: View, private readonly send: (readings: Float64Array) => void,
-                private readonly digs: () => boolean) {
+                private readonly digs: () => boolean, private readonly near: (clientX: number, clientY: number) => void) {
         canvas.addEventListener("pointerdown", (event) => this.down(event));
         canvas.addEventListener("pointermove", (event) => this.move(event));
         canvas.addEventListener("pointerup", (event) => this.up(event));
@@ -45,12 +51,17 @@ export class DigPointer {
         }
         if (event.isPrimary && event.button === 0) {
             this.canvas.setPointerCapture(event.pointerId);
-            if (event.pointerType === "touch") {
-                this.waiting = { event, timer: window.setTimeout(() => this.press(performance.now()), kSecondFingerMs) };
-            } else {
-                this.pressedBy = event.pointerId;
-                this.take([event], true);
+            const first = this.tapped;
+            this.cancelTap();
+            if (first && far(first.event, event) < kDoublePixels) {
+                this.near(event.clientX, event.clientY);
+                return;
             }
+            if (first) {
+                this.dig(first.event);  // another place
+            }
+            const ms = event.pointerType === "touch" ? kSecondFingerMs : kHeldMs;
+            this.waiting = { event, timer: window.setTimeout(() => this.press(performance.now()), ms) };
         } else if (event.pointerType === "touch") {
             this.cancelWaiting();  // two fingers move the view
             if (this.pressedBy !== undefined) {
@@ -66,12 +77,27 @@ export class DigPointer {
         this.pressedBy = event.pointerId;
         this.takeReadings([{ ms: ms - kMotionMs, x: event.clientX, y: event.clientY, pressed: true }]);
     }
+    /** Digs with a tap that stayed alone. */
+    private dig(event: PointerEvent): void {
+        this.cancelTap();
+        const { clientX: x, clientY: y } = event, ms = performance.now();
+        this.takeReadings([{ ms: ms - 2 * kMotionMs, x, y, pressed: true }, { ms, x, y, pressed: false }]);
+    }
+    private cancelTap(): void {
+        clearTimeout(this.tapped?.timer);
+        this.tapped = undefined;
+    }
     private cancelWaiting(): void {
         clearTimeout(this.waiting?.timer);
         this.waiting = undefined;
     }
 
-    /** Lifts the tool where it is. */
+    /** Lifts the tool where it is. Returns false if it is not pressed. */
+    lift(): boolean {
+        const pressed = this.pressedBy !== undefined || this.waiting !== undefined;
+        this.letGo();
+        return pressed;
+    }
     private letGo(): void {
         this.cancelWaiting();
         if (this.pressedBy !== undefined) {
@@ -86,7 +112,11 @@ export class DigPointer {
         }
         const first = this.waiting?.event;
         if (first && event.pointerId === first.pointerId) {
-            if (Math.hypot(event.clientX - first.clientX, event.clientY - first.clientY) < kFarPixels) {
+            if ((event.buttons & 1) === 0) {
+                this.cancelWaiting();  // its release was lost
+                return;
+            }
+            if (far(first, event) < (event.pointerType === "touch" ? kFarPixels : kFarPixelsOfMouse)) {
                 return;
             }
             this.press(event.timeStamp);
@@ -99,10 +129,10 @@ export class DigPointer {
     }
     private up(event: PointerEvent): void {
         if (event.pointerId === this.waiting?.event.pointerId) {
-            if (event.type === "pointercancel") {
-                this.cancelWaiting();
-            } else {
-                this.press(event.timeStamp);  // a tap
+            const { event: first } = this.waiting!;
+            this.cancelWaiting();
+            if (event.type !== "pointercancel") {
+                this.tapped = { event: first, timer: window.setTimeout(() => this.dig(first), kDoubleMs) };
             }
         }
         if (event.pointerId === this.pressedBy && (event.type === "pointercancel" || (event.buttons & 1) === 0)) {

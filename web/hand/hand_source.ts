@@ -20,6 +20,7 @@ export class HandSource implements StepSource {
     private longest = 0;           // ms, of a step since the message before
     private resting = 0;           // steps
     private pressed = false;
+    private paused = false;
 
     constructor(private readonly replica: Replica, private readonly stepsPerSecond: number, private readonly stage: Stage, private readonly keeper: Keeper) {
         this.tellMaterial();
@@ -39,6 +40,8 @@ export class HandSource implements StepSource {
                 this.replica.setMaterial(message.material, message.value);
             } else if ("depth" in message) {
                 this.replica.setDepth(message.depth);
+            } else if ("pause" in message) {
+                this.paused = message.pause;
             } else if ("keep" in message) {
                 this.keeper.hurry();
             } else if ("save" in message) {
@@ -58,6 +61,7 @@ export class HandSource implements StepSource {
         const began = performance.now();
         this.due = Math.min(this.due + (began - this.last) * this.stepsPerSecond / 1000, kMostDue);
         this.last = began;
+        this.due = this.paused ? 0 : this.due;
         while (this.due >= 1 && performance.now() - began < kSliceMs) {
             this.due -= 1;
             this.step();
@@ -71,7 +75,7 @@ export class HandSource implements StepSource {
             this.longest = 0;
         }
         this.keeper.work(this.replica, this.pressed);
-        return this.resting > kMostResting ? undefined : Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
+        return this.paused || this.resting > kMostResting ? undefined : Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
     }
 
     private step(): void {

@@ -89,7 +89,7 @@ export class Beginnings {
     private tellDig(it: Replica, note: string, since?: number): number {
         this.keyframes = new Keyframes();  // digging needs no memory for states
         const begun = it.session();
-        this.stage.tell({ kind: "dig", ...begun, words: it.words, since, note });
+        this.stage.tell({ kind: "dig", ...begun, words: it.words, sceneMaterial: it.sceneMaterial, since, note });
         return begun.stepsPerSecond;
     }
     /** Lets the hand dig in the sand of a session. */

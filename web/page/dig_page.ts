@@ -6,6 +6,8 @@ import { DigPointer } from "../hand/dig_pointer";
 import type { DigBegunMessage, DugMessage, FromHand, HandMessage, SandMessage, ToWorker } from "../replica/messages";
 import { DigPanel } from "./dig_panel";
 import { KeptList } from "./kept_list";
+import type { KeyAction } from "./key_list";
+import { sayThis } from "./say";
 
 /** What digging uses of the page. */
 export interface Page {
@@ -18,20 +20,22 @@ export interface Page {
 // The words of a session's last line (scripts/launcher/resume_command.py), for a folder that the person makes.
 const kContinues = "Put it into a folder of its own, such as out/dug. `scripts/sandwall run --resume --out out/dug --wall walls/configs/desktop.toml "
     + "--device pointer` continues with this sand.";
-const say = document.getElementById("say")!, numbers = document.getElementById("numbers")!;
+const numbers = document.getElementById("numbers")!;
 
 export class DigPage {
     private readonly panel: DigPanel;
     private readonly kept: KeptList;
+    private readonly pointer?: DigPointer;
+    private paused = false;
     private greeting = "";       // sentence with which the hand begins
     private sand?: SandMessage;  // none while the page shows a journal
 
-    constructor(private readonly page: Page, canvas: HTMLCanvasElement, private readonly view: View | undefined, private readonly noPicture: string) {
+    constructor(private readonly page: Page, canvas: HTMLCanvasElement, private readonly view: View | undefined, private readonly noPicture: string,
+                near: (clientX: number, clientY: number) => void) {
         this.kept = new KeptList((message) => page.tell(message));
-        this.panel = new DigPanel((message) => page.tell(message), (scene) => this.kept.mayLeave() && page.tell({ dig: { name: scene } }),
-                                  () => this.kept.mayLeave() && page.tell({ again: true }));
+        this.panel = new DigPanel((message) => page.tell(message), (scene) => this.open(scene), () => this.again());
         if (view) {
-            new DigPointer(canvas, view, (readings) => page.tell({ hand: readings }, [readings.buffer]), () => this.sand !== undefined && view.shows(this.sand));
+            this.pointer = new DigPointer(canvas, view, (readings) => page.tell({ hand: readings }, [readings.buffer]), () => this.sand !== undefined && view.shows(this.sand), (x, y) => near(x, y));
         }
     }
 
@@ -43,10 +47,10 @@ export class DigPage {
             case "hand": return this.beginHand(message);
             case "keeping": return this.kept.showKeeping(message);
             case "sessions": return this.kept.show(message);
-            case "note": say.textContent = message.text; return;
+            case "note": return sayThis(message.text);
             case "journal":
                 this.page.save(new Blob([message.bytes], { type: "application/octet-stream" }), message.name);
-                say.textContent = `${message.name} is saved. ${kContinues}`;
+                sayThis(`${message.name} is saved. ${kContinues}`, true);
                 return;
         }
     }
@@ -63,13 +67,14 @@ export class DigPage {
         if (this.view) {
             this.view.eye.digging = true;
         }
-        const since = opened.since === undefined ? "" : `This is your sand of ${timeOf(opened.since)}. New sand begins anew, and this sand stays.`;
-        this.greeting = [opened.note, since, `${opened.name}: press the left button or a finger, and dig. The right button or two fingers turn the sand.`,
+        this.paused = false;
+        const since = opened.since === undefined ? "" : `This is your sand of ${timeOf(opened.since)}. More, New sand begins anew, and keeps this sand.`;
+        this.greeting = [opened.note, since, `${opened.name}: draw with a finger or the left button. H shows all keys.`,
                          opened.shortcoming, this.noPicture].filter((part) => part !== "").join(" ");
     }
     private beginHand({ step, hash }: HandMessage): void {
         Object.assign(document.body.dataset, { hand: "yes", goesOnStep: step, goesOnHash: hash });
-        say.textContent = this.greeting;
+        sayThis(this.greeting);
     }
     /** The page shows a journal from now on. */
     end(): void {
@@ -88,6 +93,44 @@ export class DigPage {
         Object.assign(document.body.dataset, { step, hash, busy });
         numbers.textContent = [`${(step / this.sand!.stepsPerSecond).toFixed(1)} s, step ${step}, state hash ${hash}`, busy].filter((part) => part !== "").join(". ");
         this.panel.showStep(message);
+    }
+
+    /** Lifts the tool. Returns false if it is not pressed. */
+    lift(): boolean { return this.pointer?.lift() ?? false; }
+    get digs(): boolean { return this.sand !== undefined; }
+    /** Does what a key asks for, while the page digs. */
+    act(action: KeyAction, index: number): void {
+        const { panel, page } = this;
+        switch (action) {
+            case "tool": return panel.chooseTool(index);
+            case "larger": return panel.resizeBy(1);
+            case "smaller": return panel.resizeBy(-1);
+            case "turnLeft": return panel.turn(1);
+            case "turnRight": return panel.turn(-1);
+            case "sceneTool": return panel.restoreTool();
+            case "wetter": return panel.moisten(1);
+            case "drier": return panel.moisten(-1);
+            case "undo": return page.tell({ edit: "undo" });
+            case "newSand": return this.again();
+            case "save": return page.tell({ save: true });
+            case "pause":
+                this.paused = !this.paused;
+                page.tell({ pause: this.paused });
+                return sayThis(this.paused ? "Paused. Space resumes." : "Resumed.", this.paused);
+        }
+    }
+    /** What the wheel changes. */
+    readonly wheel = { depth: (by: number) => this.panel.deepen(by), size: (by: number) => this.panel.resizeBy(-by) };
+    private again(): void {
+        if (this.kept.mayLeave()) {
+            this.page.tell({ again: true });
+        }
+    }
+    /** Begins with new sand of a scene. */
+    open(scene: string): void {
+        if (this.kept.mayLeave()) {
+            this.page.tell({ dig: { name: scene } });
+        }
     }
 
     /** Asks before sand is left that is not kept. Returns whether it may be. */

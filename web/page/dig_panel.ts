@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls for digging: the scene, the tool, the material, edits, and saving.
-import type { DigBegunMessage, DugMessage, MaterialMessage, ToHand, Tool, Words } from "../replica/messages";
+import type { DigBegunMessage, DugMessage, Material, MaterialMessage, ToHand, Tool, Words } from "../replica/messages";
 import { showOthers } from "./others";
 
 declare const SCENES: string[];  // names of the encoded scenes, which web/build.mjs lists
 
 const kWider = 1.25;         // ratio of the tool's sizes, as for a wall's keys
+const kUsualDepth = "0.5";   // radii
+const kTurn = 5;             // degrees
+const kMoreHumidity = 0.1;
+const kDeeper = 0.1;         // radii
+// What the numbers of a material mean, beside the technical word.
+const kPlain: Record<string, string> = {
+    talus: "steepness, in degrees", "wet-talus": "steepness when wet, in degrees", humidity: "wetness, 0 to 1", cohesion: "height of an upright wet bank",
+    band: "how much steeper sand at rest can be", "settling-time": "time to rest, in s",
+};
 const kShortest = 2, kLongest = 0.25;  // length of the tool: cells, and share of the field's shorter side
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
@@ -14,6 +23,7 @@ const input = (id: string) => element<HTMLInputElement>(id), choice = (id: strin
 export class DigPanel {
     private words?: Words;
     private material?: MaterialMessage;
+    private ofScene?: Material;
     private limits = { least: 0, most: Infinity };  // radius, scene unit
 
     /**
@@ -26,10 +36,7 @@ export class DigPanel {
         choice("tool").onchange = () => this.change("kind", choice("tool").value);
         element("larger").onclick = () => this.resize(kWider);
         element("smaller").onclick = () => this.resize(1 / kWider);
-        input("depth").oninput = () => {
-            element("depth").setAttribute("aria-valuetext", `${Math.round(100 * input("depth").valueAsNumber)} % of the radius`);
-            tell({ depth: input("depth").valueAsNumber });
-        };
+        input("depth").oninput = () => this.setDepth(input("depth").valueAsNumber);
         input("width").onchange = () => this.whenNumber("width", (width) => this.change("width", width));
         input("heading").onchange = () => this.whenNumber("heading", (heading) => this.change("heading", heading));
         choice("foot").onchange = () => this.change("foot", choice("foot").value);
@@ -50,6 +57,46 @@ export class DigPanel {
         const radius = this.material!.tool.radius, { least, most } = this.limits;
         this.change("radius", Math.min(Math.max(radius * factor, Math.min(least, radius)), Math.max(most, radius)));
     }
+    private setDepth(depth: number): void {
+        element("depth").setAttribute("aria-valuetext", `${Math.round(100 * depth)} % of the radius`);
+        this.tell({ depth });
+    }
+
+    // What keys and the wheel change
+
+    chooseTool(index: number): void {
+        if (this.words && index < this.words.tools.length) {
+            this.change("kind", this.words.tools[index]);
+        }
+    }
+    /** Makes the tool larger by a notch, or smaller by -1. */
+    resizeBy(notches: number): void { this.resize(kWider ** notches); }
+    /** Turns the tool to the left, or to the right by -1. A round tool has no heading. */
+    turn(notches: number): void {
+        const { heading } = this.material!.tool;
+        if (heading !== undefined) {
+            this.change("heading", ((heading + notches * kTurn) % 360 + 360) % 360);
+        }
+    }
+    deepen(notches: number): void {
+        const depth = Math.min(Math.max(input("depth").valueAsNumber + kDeeper * notches, Number(input("depth").min)), Number(input("depth").max));
+        input("depth").value = depth.toFixed(1);
+        this.setDepth(Number(input("depth").value));
+    }
+    moisten(notches: number): void {
+        const humidity = this.material!.material.humidity + kMoreHumidity * notches;
+        this.tell({ material: "humidity", value: Math.min(Math.max(+humidity.toFixed(6), 0), 1) });
+    }
+    /** Gives tool and humidity of the scene back, and the usual depth. */
+    restoreTool(): void {
+        for (const [part, value] of Object.entries(this.ofScene!.tool)) {
+            this.change(part as keyof Tool, value);
+        }
+        this.tell({ material: "humidity", value: this.ofScene!.material.humidity });
+        input("depth").value = kUsualDepth;
+        this.setDepth(Number(kUsualDepth));
+    }
+
     private whenNumber(id: string, use: (number: number) => void): void {
         if (Number.isFinite(input(id).valueAsNumber)) {
             use(input(id).valueAsNumber);
@@ -64,7 +111,7 @@ export class DigPanel {
     private offer(words: Words): void {
         this.words = words;
         choice("tool").replaceChildren(...words.tools.map((name) => new Option(name)));
-        choice("word").replaceChildren(...words.material.map(({ word }) => new Option(word)));
+        choice("word").replaceChildren(...words.material.map(({ word }) => new Option(kPlain[word] ? `${kPlain[word]} (${word})` : word, word)));
         for (const edit of words.edits) {
             (document.getElementById(edit) ?? this.added(edit)).onclick = edit === "reset" ? () => this.again() : () => this.tell({ edit });
         }
@@ -84,8 +131,9 @@ export class DigPanel {
                 this.offer(sand.words);
             }
             this.scene = sand.name;
+            this.ofScene = sand.sceneMaterial;
             this.limits = { least: kShortest * sand.cell / 2, most: kLongest * Math.min(sand.columns, sand.rows) * sand.cell / 2 };
-            input("depth").value = "0.5";
+            input("depth").value = kUsualDepth;
             element<HTMLButtonElement>("undo").disabled = true;
         }
     }
@@ -93,7 +141,7 @@ export class DigPanel {
         this.material = message;
         const { kind, radius, width = 1, heading = 0, foot = "right" } = message.tool;
         choice("tool").value = kind;
-        element("size").textContent = `radius ${radius.toPrecision(3)}`;
+        element("size").textContent = `Radius ${radius.toPrecision(3)}`;
         input("heading").value = String(+heading.toFixed(1));
         input("width").value = String(+width.toPrecision(3));
         choice("foot").value = foot;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of the page that shows a journal: the timeline, and whether the hashes are those of the session.
 import type { FrameMessage, ProgressMessage, SessionMessage, ToWorker } from "../replica/messages";
+import { sayThis } from "./say";
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
-const say = element("say"), numbers = element("numbers"), slider = element<HTMLInputElement>("step"), speed = element<HTMLSelectElement>("speed");
+const numbers = element("numbers"), slider = element<HTMLInputElement>("step"), speed = element<HTMLSelectElement>("speed");
 const playButton = element<HTMLButtonElement>("play");
 
 const kMostMarks = 2000;
@@ -76,12 +77,10 @@ export class JournalPage {
             return;
         }
         const { step, hash, matches, mismatches, passed } = this.progress, { name, lastStep, hashes: all, shortcoming } = this.session;
-        const doing = passed ? (mismatches === 0 ? `All ${matches} hashes equal those of the session.` : `${mismatches} of ${all} hashes differ from the session.`)
-                             : `Computing the sand: step ${step} of ${lastStep}, ${matches} of ${all} hashes compared.`;
+        const doing = passed ? (mismatches === 0 ? `the same sand as the wall, ${matches} of ${all} times.` : `other sand than the wall, ${mismatches} of ${all} times.`)
+                             : `computing the sand, ${this.seconds(step)} of ${this.seconds(lastStep)}. So far the same as the wall, ${matches} of ${all} times.`;
         const text = [`${name}:`, doing, passed ? shortcoming : "", this.noPicture].filter((part) => part !== "").join(" ");
-        if (say.textContent !== text) {
-            say.textContent = text;
-        }
+        sayThis(text, true);
         const shown = this.shown ?? step;
         numbers.textContent = `${this.seconds(shown)} of ${this.seconds(lastStep)}, step ${shown}, state hash of step ${step}: ${hash}`;
     }
@@ -96,6 +95,12 @@ export class JournalPage {
         }
     }
 
+    /** Plays, or stops. */
+    toggle(): void {
+        if (!playButton.disabled) {
+            this.play(!this.playing);
+        }
+    }
     private play(on: boolean): void {
         this.playing = on;
         playButton.textContent = on ? "Stop" : "Play";

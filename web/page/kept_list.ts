@@ -2,9 +2,10 @@
 // The sessions that this browser keeps, as a list, and the question before sand is left that it does not keep.
 import { timeOf } from "../kept/keeper";
 import type { KeepingMessage, SessionsMessage, ToWorker } from "../replica/messages";
+import { sayThis } from "./say";
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
-const list = element<HTMLSelectElement>("kept"), goOn = element<HTMLButtonElement>("goOn"), forget = element<HTMLButtonElement>("forget"), say = element("say");
+const list = element<HTMLSelectElement>("kept"), goOn = element<HTMLButtonElement>("goOn"), forget = element<HTMLButtonElement>("forget");
 const kMine = "sandwall session";  // key of the session that this tab had last
 
 export class KeptList {
@@ -42,7 +43,7 @@ export class KeptList {
         }
         this.why = unkept ? why : "";
         if (sentences.length > 0) {
-            say.textContent = sentences.join(" ");
+            sayThis(sentences.join(" "), this.why !== "");
         }
         try {
             sessionStorage.setItem(kMine, id);
@@ -64,6 +65,9 @@ export class KeptList {
             const mark = id === current ? ", this sand" : "";
             return new Option(`${name}, ${timeOf(changed)}, ${seconds} s${mark}`, id);
         }));
+        if (sessions.length === 0) {
+            list.append(new Option("none yet", ""));
+        }
         if (sessions.some(({ id }) => id === chosen)) {
             list.value = chosen;
         }

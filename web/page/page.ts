@@ -5,13 +5,20 @@ import type { FrameMessage, FromWorker, SandMessage, SessionMessage, ToWorker } 
 import { DigPage } from "./dig_page";
 import { JournalPage } from "./journal_page";
 import { showOthers } from "./others";
+import type { KeyAction } from "./key_list";
+import { Keys } from "./keys";
+import { Layout } from "./layout";
+import { PlaceUnderPointer } from "./place";
 import { Results, save, textOfEye } from "./results";
+import { hush, sayThis } from "./say";
 import { fetchJournal, openDroppedFiles } from "./session_files";
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
-const canvas = element<HTMLCanvasElement>("sand"), say = element("say"), cutButton = element<HTMLButtonElement>("cut");
+const canvas = element<HTMLCanvasElement>("sand"), cutButton = element<HTMLButtonElement>("cut");
 // What the parts of the page take from the sand that begins.
-const kKnown = ["kind", "name", "shortcoming", "hasHeights", "columns", "rows", "cell", "stepsPerSecond", "middle", "address", "lastStep", "hashes", "marks", "words"];
+const kKnown = ["kind", "name", "shortcoming", "hasHeights", "columns", "rows", "cell", "stepsPerSecond", "middle", "address", "lastStep", "hashes", "marks", "words", "sceneMaterial", "since", "note"];
+const kFirstScene = "dunes";
+const kCloser = 0.87;  // share of the distance
 const query = new URLSearchParams(location.search);
 
 const worker = new Worker("worker.js", { type: "module" });
@@ -40,11 +47,13 @@ try {
 
 function problem(text: string): void {
     document.body.dataset.problem = text;
-    say.textContent = text;
+    sayThis(text, true);
 }
 
 const journal = new JournalPage(tell, noPicture, Number(query.get("step") ?? NaN));
-const dig = new DigPage({ tell, beginSand, save, problem }, canvas, view, noPicture);
+const place = view && new PlaceUnderPointer(canvas, view, tell);
+const dig = new DigPage({ tell, beginSand, save, problem }, canvas, view, noPicture, (x, y) => place?.look(x, y, true));
+const layout = new Layout((name) => dig.open(name));
 const results = new Results(canvas, view);
 
 let sand: SandMessage | undefined;  // of the session, or of the hand
@@ -62,6 +71,7 @@ function beginSand(opened: SandMessage, address = ""): void {
     cutButton.disabled = !opened.hasHeights;
     cutButton.setAttribute("aria-pressed", "false");
     results.begin(opened, address);
+    place?.begin(opened.cell);
     showOthers("sand", opened, kKnown);
 }
 function beginJournal(opened: SessionMessage): void {
@@ -96,7 +106,13 @@ worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
         case "session": return beginJournal(data);
         case "frame": return show(data);
         case "progress": return journal.take(data);
+        case "place": return place?.take(data);
         case "problem": return problem(data.text);
+        case "dig":
+            if (data.since !== undefined) {
+                layout.invite(false);  // a person's own sand
+            }
+            return dig.take(data);
         default: return dig.take(data);
     }
 };
@@ -105,12 +121,43 @@ worker.onerror = ({ message }) => problem(message ? `The page's worker has faile
 
 const opener = { tell, problem, mayLeave: () => dig.mayLeave() };
 openDroppedFiles(opener);
+
+/** Does what a key asks for. */
+function act(action: KeyAction, index: number): void {
+    switch (action) {
+        case "help": return layout.showHelp(!layout.helps);
+        case "escape":
+            if (!layout.close() && !dig.lift() && document.fullscreenElement) {
+                void document.exitFullscreen();
+            }
+            return;
+        case "statistics": return layout.showDetails();
+        case "frame": return view?.eye.lookAtAll();
+        case "picture": return element("picture").click();
+        case "onlyInAWindow": return sayThis("This key works only in a window of a wall. H shows all keys.");
+    }
+    if (dig.digs) {
+        return dig.act(action, index);
+    }
+    switch (action) {
+        case "pause": return journal.toggle();
+        case "larger": return view?.eye.approach(kCloser);
+        case "smaller": return view?.eye.approach(1 / kCloser);
+    }
+}
+new Keys(canvas, act, dig.wheel, () => dig.digs);
+canvas.addEventListener("pointerdown", hush);
+canvas.addEventListener("dblclick", ({ clientX, clientY }) => {
+    if (!dig.digs) {
+        place?.look(clientX, clientY, true);
+    }
+});
+
 const named = query.get("journal"), scene = query.get("dig");
-if (scene !== null) {
-    dig.start(scene, true);
-} else if (named !== null) {
-    say.textContent = `Fetching ${named}`;
+if (named !== null && scene === null) {
+    sayThis(`Fetching ${named}`, true);
     fetchJournal(named, opener).catch((error: Error) => problem(`${named}: cannot be fetched (${error.message})`));
-} else if (noPicture !== "") {
-    say.textContent = noPicture;
+} else {
+    dig.start(scene ?? kFirstScene, scene !== null);
+    layout.invite(scene === null && view !== undefined);
 }

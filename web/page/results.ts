@@ -2,9 +2,9 @@
 // What a person takes away from the page: a picture, heights, a link to a moment, and the journal of what was dug.
 import type { View } from "../drawing/view";
 import { type FrameMessage, kUnitsPerCell, type SandMessage } from "../replica/messages";
+import { sayThis } from "./say";
 
 const button = (id: string) => document.getElementById(id) as HTMLButtonElement;
-const say = document.getElementById("say")!;
 
 /** Offers a file to the person. */
 export function save(blob: Blob, name: string): void {
@@ -64,9 +64,9 @@ export class Results {
         history.replaceState(null, "", link);
         try {
             await navigator.clipboard.writeText(link);
-            say.textContent = "The link to this moment is copied.";
+            sayThis("The link to this moment is copied.");
         } catch {
-            say.textContent = "The address of this page is now the link to this moment.";
+            sayThis("The address of this page is now the link to this moment.");
         }
     }
 }

@@ -90,6 +90,10 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     if (beginning) {
         return start(beginning);
     }
+    if ("look" in data) {
+        const place = source && replica!.look(data.look);
+        return tell({ kind: "place", place, near: data.near });
+    }
     if ("shown" in data) {
         mayShow = true;
     } else {

@@ -51,6 +51,7 @@ export type ToHand =
     | { material: string; value: number }   // an operator's word, such as "talus"
     | { depth: number }                     // of the tool, in radii
     | { save: true }
+    | { pause: boolean }
     | { keep: true };                       // at once, because the page may be closed
 
 export type ToWorker =
@@ -62,6 +63,7 @@ export type ToWorker =
     | { goOn: string }     // session that is kept
     | { forget: string }   // session that is kept
     | { seek: number }
+    | { look: number[]; near: boolean }   // eye and direction of the sight [cell]
     | { play: number }     // steps per second; negative: backwards; 0: stop
     | { shown: true };     // the page has drawn a frame, and may get the next
 
@@ -89,8 +91,16 @@ export interface SessionMessage extends SandMessage {
 export interface DigBegunMessage extends SandMessage {
     kind: "dig";
     words: Words;
+    sceneMaterial: Material;
     since?: number;            // when the kept sand was dug last [ms since 1970]; absent if it is new
     note: string;              // why it is not the sand that was asked for; empty if it is
+}
+
+/** The sand under the pointer: x, y [cell], height [scene unit], height [cell]. Absent beside the sand. */
+export interface PlaceMessage {
+    kind: "place";
+    place?: number[];
+    near: boolean;             // of the question
 }
 
 /** The hand can dig. If the sand was kept, it is that of this step. */
@@ -112,11 +122,14 @@ export interface SessionsMessage {
     current: string;
 }
 
-/** The material that was asked for, in the units of a scene file. */
-export interface MaterialMessage {
-    kind: "material";
+/** A material in the units of a scene file. */
+export interface Material {
     material: Record<string, number>;  // by an operator's word
     tool: Tool;
+}
+/** The material that was asked for. */
+export interface MaterialMessage extends Material {
+    kind: "material";
 }
 
 /** How far the hand's steps are. `busy` says what keeps the worker from answering; empty if nothing does. */
@@ -175,4 +188,4 @@ export interface ProblemMessage {
 }
 
 export type FromHand = DigBegunMessage | MaterialMessage | DugMessage | JournalMessage | NoteMessage | HandMessage | KeepingMessage | SessionsMessage;
-export type FromWorker = SessionMessage | FrameMessage | ProgressMessage | ProblemMessage | FromHand;
+export type FromWorker = SessionMessage | FrameMessage | PlaceMessage | ProgressMessage | ProblemMessage | FromHand;

@@ -63,6 +63,13 @@ export class Replica {
     advance(): boolean { return this.require(this.wasm._sw_advance()) === 1; }
     stepOn(): boolean { return this.require(this.wasm._sw_step_on()) === 1; }
     get step(): number { return this.wasm._sw_step(); }
+    /** Returns the place that a sight meets, or undefined: x and y [cell], height [scene unit], height [cell]. */
+    look(sight: number[]): number[] | undefined {
+        if (this.require(this.wasm._sw_look(...sight)) === 0) {
+            return undefined;
+        }
+        return [...new Float64Array(this.wasm.HEAPU8.buffer, this.wasm._sw_place(), 4)];
+    }
     get hash(): string { return this.text(this.wasm._sw_hash()); }
     get matches(): number { return this.wasm._sw_matches(); }
     get mismatches(): number { return this.wasm._sw_mismatches(); }
@@ -132,6 +139,7 @@ export class Replica {
     get settlesNext(): boolean { return this.wasm._sw_settles_next() === 1; }
     get words(): Words { return this.json(this.wasm._sw_words()); }
     get material() { return this.json(this.wasm._sw_material()); }
+    get sceneMaterial() { return this.json(this.wasm._sw_scene_material()); }
     get canUndo(): boolean { return this.wasm._sw_can_undo() === 1; }
     ask(edit: string): void { this.withText(edit, (at) => this.wasm._sw_ask(at)); }
     setDepth(depth: number): void { this.require(this.wasm._sw_set_depth(depth)); }

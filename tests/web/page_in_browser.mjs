@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first screen of the page, its layout on each size of screen, and the keys and touches of a window. Chromium alone.
+// usage: node tests/web/page_in_browser.mjs [FOLDER]    pictures of each size go to FOLDER
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { complaintsOf, launch, press, serve } from "./browser.mjs";
+
+const [pictures] = process.argv.slice(2);
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "page-")), grid = path.join(folder, "flat.asc");
+fs.writeFileSync(grid, `ncols 60\nnrows 60\nxllcorner 4000\nyllcorner 5000\ncellsize 1\n${"0 ".repeat(3600)}\n`);
+const { address, end } = await serve(), browser = await launch("chromium");
+const page = await browser.newPage(), complaints = complaintsOf(page, address);
+const until = (condition) => page.waitForFunction(condition, { timeout: 120_000, polling: 50 });
+const data = () => page.evaluate(() => ({ ...document.body.dataset }));
+const value = (id) => page.$eval(id, (control) => control.value || control.textContent);
+const canUndo = () => page.$eval("#undo", (button) => !button.disabled);
+const digs = (name) => until(`document.body.dataset.digging === "${name}" && document.body.dataset.hand === "yes" && document.body.dataset.shown && document.body.dataset.step > 2`);
+async function steps(count) {
+    const step = Number((await data()).step ?? 0) + count;
+    await until(`Number(document.body.dataset.step) >= ${step}`);
+}
+/** Returns the window's place of a place in shares of the canvas. */
+async function at(u, v) {
+    const { x, y, width, height } = await (await page.$("#sand")).boundingBox();
+    return [x + u * width, y + v * height];
+}
+async function eye() {
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+    const numbers = (await data()).view.split(",").map(Number), target = numbers.slice(3);
+    return { target, far: Math.hypot(...numbers.slice(0, 3).map((n, i) => n - target[i])) };
+}
+
+/** The page opens with dunes, an invitation and three pictures. The first touch ends the invitation. */
+async function firstScreen() {
+    const began = performance.now();
+    await page.goto(address);
+    await until("document.body.dataset.view && document.body.dataset.shown");
+    console.log(`the first sand after ${Math.round(performance.now() - began)} ms`);
+    await digs("dunes");
+    const seen = (id) => page.$eval(id, (it) => getComputedStyle(it).display !== "none");
+    assert.deepEqual([await seen("#ghost"), await seen("#scenes")], [true, true]);
+    assert.equal((await page.$$("#scenes button")).length, 3);
+    assert.deepEqual([(await data()).unkept, (await data()).keptSessions, await canUndo()], ["false", "0", false], "the invitation digs nothing");
+    await page.click("#scenes button:nth-child(3)");
+    await digs("writing");
+    assert.equal(await page.$eval("#scene", (list) => list.value), "writing", "the list says what is dug");
+    await page.mouse.click(...await at(0.5, 0.5));
+    assert.deepEqual([await seen("#ghost"), await seen("#scenes")], [false, false]);
+    await (await page.$("#files")).uploadFile(grid);
+    await digs("flat");
+}
+
+/** Sand has at least 60 % of each screen. Nothing is cut, in the row, in the drawer and in the help. */
+async function sizes() {
+    const kSizes = [[320, 480, 1], [390, 844, 1], [640, 360, 1], [1280, 720, 1], [1920, 1080, 1], [640, 360, 2], [320, 240, 2]];  // the last two: at 200 %
+    const cut = (within) => page.evaluate((section) => [...document.querySelectorAll(section)].filter((it) => it.getClientRects().length > 0).filter((it) => {
+        it.scrollIntoView({ block: "nearest" });
+        const { left, right, top, bottom } = it.getBoundingClientRect();
+        return left < -1 || right > innerWidth + 1 || top < -1 || bottom > innerHeight + 1 || (it.matches("button") && it.scrollWidth > it.clientWidth + 1);
+    }).map((it) => it.id || it.textContent), within);
+    for (const [width, height, deviceScaleFactor] of kSizes) {
+        const size = `${width} x ${height} at ${deviceScaleFactor}`;
+        await page.setViewport({ width, height, deviceScaleFactor });
+        const { share, wide } = await page.evaluate(() => {
+            const { width, height } = document.getElementById("sand").getBoundingClientRect();
+            return { share: width * height / innerWidth / innerHeight, wide: document.documentElement.scrollWidth > innerWidth };
+        });
+        assert.ok(share >= 0.6, `${size}: ${share} of the screen is sand`);
+        assert.equal(wide, false, size);
+        const shot = async (what) => {
+            if (pictures) {
+                await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 800)));
+                await page.screenshot({ path: path.join(pictures, `${what}_${width}x${height}@${deviceScaleFactor}.png`) });
+            }
+        };
+        assert.deepEqual(await cut("#row *, #full, #say"), [], size);
+        await shot("dig");
+        await page.click("#more");
+        assert.deepEqual(await cut("#drawer button, #drawer select, #drawer input, #drawer label, #drawer summary"), [], size);
+        await shot("drawer");
+        await page.keyboard.press("Escape");
+        await page.keyboard.press("h");
+        assert.deepEqual(await cut("#help td"), [], size);
+        await shot("help");
+        await page.keyboard.press("Escape");
+        assert.deepEqual([await page.$eval("#help", (help) => help.hidden), await page.$eval("#drawer", (drawer) => drawer.hidden)], [true, true]);
+    }
+    await page.setViewport({ width: 800, height: 600 });
+}
+
+/** Each control that is enabled can be reached by Tab. The colours are those of the person's system. */
+async function reach() {
+    await page.click("#more");
+    const wanted = await page.$$eval("button, select, input, summary, canvas", (all) => all.filter((it) => !it.disabled && it.getClientRects().length > 0 && !(it.id === "sand"))
+        .map((it) => it.id || it.tagName));
+    await page.focus("#sand");
+    const reached = new Set();
+    for (let i = 0; i < wanted.length + 4; ++i) {
+        await page.keyboard.press("Tab");
+        reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.tagName));
+    }
+    assert.deepEqual(wanted.filter((id) => !reached.has(id)), []);
+    assert.ok(wanted.length >= 18, wanted.join());
+    await page.keyboard.press("Escape");
+    const grounds = new Set();
+    for (const scheme of ["light", "dark"]) {
+        await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+        grounds.add(await page.evaluate(() => getComputedStyle(document.body).backgroundColor));
+    }
+    assert.equal(grounds.size, 2);
+}
+
+/** The keys of a window. */
+async function keys() {
+    await page.focus("#sand");
+    const tool = async (key, name) => {
+        await page.keyboard.press(key);
+        await until(`document.getElementById("tool").value === "${name}"`);
+    };
+    const size = () => value("#size");
+    await tool("4", "ellipse");
+    const heading = await value("#heading");
+    await page.keyboard.press(",");
+    await until(`Number(document.getElementById("heading").value) === ${(Number(heading) + 5) % 360}`);
+    const small = await size();
+    await page.keyboard.press("+");
+    await until(`document.getElementById("size").textContent !== "${small}"`);
+    await page.keyboard.press("w");
+    await page.select("#word", "humidity");
+    await until(`document.getElementById("number").value === "0.1"`);
+    await page.keyboard.press("0");
+    await tool("1", "sphere");
+    await until(`document.getElementById("size").textContent === "${small}" && document.getElementById("number").value === "0"`);
+
+    await page.keyboard.press("Space");
+    await until("/^Paused/.test(document.getElementById('say').textContent)");
+    let paused = false;
+    for (let tries = 0; !paused && tries < 50; ++tries) {  // the worker may be busy
+        const { step } = await data();
+        await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 300)));
+        paused = (await data()).step === step;
+    }
+    assert.ok(paused, "no step is made during a pause");
+    await page.keyboard.press("Space");
+    await steps(5);
+
+    // Escape lifts the tool of a stroke, whose sand stays. Then it has nothing to close, and nothing ends.
+    await page.mouse.move(...await at(0.45, 0.5));
+    await page.mouse.down();
+    await page.mouse.move(...await at(0.55, 0.5), { steps: 5 });
+    await until("!document.getElementById('undo').disabled");
+    await page.keyboard.press("Escape");
+    await steps(20);
+    const { kept } = await page.evaluate(() => ({ kept: document.body.dataset.hash }));
+    await page.mouse.move(...await at(0.5, 0.6), { steps: 5 });
+    await steps(10);
+    await page.mouse.up();
+    assert.ok(kept && await canUndo());
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("q");
+    await steps(5);
+    assert.deepEqual([(await data()).digging, await canUndo()], ["flat", true], "Escape and Q leave the sand");
+    await page.keyboard.down("Control");
+    await page.keyboard.press("z");
+    await page.keyboard.up("Control");
+    await until("document.getElementById('undo').disabled");
+    await page.keyboard.press("g");
+    await until("/only in a window of a wall/.test(document.getElementById('say').textContent)");
+    // A key that is typed into a field is its own.
+    await press(page, "#details summary");
+    await page.click("#more");
+    await page.focus("#scene");
+    await page.keyboard.press("2");
+    await page.keyboard.press("Escape");
+    assert.equal(await value("#tool"), "sphere");
+}
+
+/** Wheel, double click, and the height under the pointer. */
+async function touches() {
+    await page.keyboard.press("Home");
+    const before = await eye(), depth = await value("#depth"), size = await value("#size");
+    const [x, y] = await at(0.6, 0.45);
+    await page.mouse.move(x, y);
+    await until("document.body.dataset.height === 'height 0.0' && document.getElementById('height').textContent === 'height 0.0'");
+    await page.mouse.wheel({ deltaY: -100 });
+    const nearer = await eye();
+    assert.ok(nearer.far < 0.99 * before.far && nearer.target[0] > before.target[0] + 0.002, `the wheel goes to the pointer: ${JSON.stringify([before, nearer])}`);
+    await page.keyboard.down("Shift");
+    await page.mouse.wheel({ deltaY: 100 });
+    await page.keyboard.up("Shift");
+    await until(`document.getElementById("depth").value !== "${depth}"`);
+    await page.keyboard.down("Control");
+    await page.mouse.wheel({ deltaY: -100 });
+    await page.keyboard.up("Control");
+    await until(`document.getElementById("size").textContent !== "${size}"`);
+    assert.ok(Math.abs((await eye()).far - nearer.far) < 0.001, "neither has moved the eye");
+    await page.mouse.click(x, y, { count: 2 });
+    await page.waitForFunction((far) => {
+        const numbers = document.body.dataset.view.split(",").map(Number);
+        return Math.hypot(...[0, 1, 2].map((i) => numbers[i] - numbers[i + 3])) < 0.7 * far;
+    }, { timeout: 120_000, polling: 50 }, nearer.far);
+    await steps(30);
+    assert.equal(await canUndo(), false, "a double click digs nothing");
+    await page.keyboard.press("v");
+    assert.ok(Math.abs((await eye()).far - before.far) < 0.001, "V frames the terrain");
+    await page.mouse.click(x, y);
+    await until("!document.getElementById('undo').disabled");  // a single click digs
+}
+
+try {
+    await page.setViewport({ width: 800, height: 600 });
+    await firstScreen();
+    await sizes();
+    await reach();
+    await keys();
+    await touches();
+    assert.deepEqual(complaints, []);
+    console.log("the page invites, fits each screen, and obeys the keys and touches of a window");
+} finally {
+    await browser.close();
+    end();
+    fs.rmSync(folder, { recursive: true });
+}
+process.exit(0);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Obeys the keys of a wall's window, and the wheel with Shift and Ctrl.
+import { findKey, type KeyAction } from "./key_list";
+
+/** Does what a key asks for. `index` is the place of the key among those with this action. */
+export type Act = (action: KeyAction, index: number) => void;
+/** What a notch of the wheel changes: 1 towards the person, -1 away. */
+export interface Wheel {
+    depth(by: number): void;
+    size(by: number): void;
+}
+
+/** Whether an element takes a key itself: a letter that is typed, or Space on a button. */
+function takesKey(target: EventTarget | null, key: string): boolean {
+    if (!(target instanceof HTMLElement)) {
+        return false;
+    }
+    const isField = target.matches("input[type=number], select, textarea, [contenteditable]");
+    const moves = ["Home", "End", "PageUp", "PageDown", "+", "-"].includes(key) && target.matches("input[type=range]");
+    return key !== "Escape" && (isField || moves || (key === " " && target.matches("button, summary, input")));
+}
+
+export class Keys {
+    private controlIsDown = false;
+
+    constructor(canvas: HTMLCanvasElement, act: Act, wheel: Wheel, private readonly digs: () => boolean) {
+        document.addEventListener("keydown", (event) => {
+            this.controlIsDown = event.ctrlKey;
+            const found = findKey(event);
+            if (found && !takesKey(event.target, event.key)) {
+                event.preventDefault();
+                act(found.entry.action, found.index);
+            }
+        });
+        document.addEventListener("keyup", (event) => { this.controlIsDown = event.ctrlKey; });
+        // A pinch on a touchpad is a wheel with Ctrl that nobody presses, and comes nearer.
+        canvas.addEventListener("wheel", (event) => {
+            const changesSize = event.ctrlKey && this.controlIsDown, notch = Math.sign(event.deltaY || event.deltaX);
+            if (!this.digs() || !(changesSize || event.shiftKey)) {
+                return;
+            }
+            event.preventDefault();
+            event.stopImmediatePropagation();
+            if (changesSize) {
+                wheel.size(notch);
+            } else {
+                wheel.depth(notch);
+            }
+        }, { capture: true, passive: false });
+    }
+}
