@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 mkdir -p "$2"
-coproc server { exec scripts/sandwall web "$1"; }
+coproc server { exec scripts/sandwall web --port 0 "$1"; }
 pid=$server_PID
 trap 'kill "$pid"' EXIT
 read -r address <&"${server[0]}"

@@ -6,7 +6,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 const kNearest = 0.12, kNearer = 0.45;  // [m], and share of the distance, for goNear()
 
 const kUpright = 0.9;        // width over height of a picture that shows more of the sand from above
-const kFromTheSide = new Vector3(0, 0.55, 0.62), kFromAbove = new Vector3(0, 0.8, 0.5);
+const kFromTheSide = new Vector3(0, 0.55, 0.62), kFromAbove = new Vector3(0, 0.9, 0.42);
 const kBoard = 0.02, kHigh = 0.05, kShare = 0.97;  // [m], around and above the sand, and the share of the picture for all of it
 
 export class Eye {
