@@ -8,8 +8,11 @@ export const root = fileURLToPath(new URL("../../", import.meta.url));
 const require = createRequire(new URL("../../web/package.json", import.meta.url));
 const puppeteer = require("puppeteer-core").default ?? require("puppeteer-core");
 
-/** Starts `chromium` or `firefox`, with further preferences of Firefox. It needs a display for its WebGL, such as that of xvfb-run. */
-export function launch(name, { webgl = true, prefs = {} } = {}) {
+/**
+ * Starts `chromium` or `firefox`, with further preferences of Firefox, or with a profile folder of Chromium. It needs a display
+ * for its WebGL, such as that of xvfb-run.
+ */
+export function launch(name, { webgl = true, prefs = {}, userDataDir } = {}) {
     if (name === "firefox") {
         return puppeteer.launch({
             browser: "firefox", executablePath: "/usr/bin/firefox-esr", headless: !process.env.DISPLAY,
@@ -17,7 +20,7 @@ export function launch(name, { webgl = true, prefs = {} } = {}) {
         });
     }
     const drawing = webgl ? ["--enable-unsafe-swiftshader", "--use-gl=angle", "--use-angle=swiftshader"] : ["--disable-gpu", "--disable-3d-apis"];
-    return puppeteer.launch({ executablePath: "/usr/bin/chromium", headless: true, protocolTimeout: 600_000, args: ["--no-sandbox", ...drawing] });
+    return puppeteer.launch({ executablePath: "/usr/bin/chromium", headless: true, userDataDir, protocolTimeout: 600_000, args: ["--no-sandbox", ...drawing] });
 }
 
 /** Serves the page with a session, or without one. Returns its address and a function that ends the server. */

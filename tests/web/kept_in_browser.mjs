@@ -121,6 +121,14 @@ try {
     assert.match(await said(second), /^Another tab digs in the kept sand of stroke\. This tab has new sand, and the other stays\./);
     assert.equal((await data(second)).goesOnStep, "0");
     await second.close();
+
+    // The list says what is dug, and new sand of the same scene throws nothing away.
+    assert.equal(await first.$eval("#scene", (list) => list.value), "stroke");
+    const { keptStep } = await data(first);
+    await press(first, "#dig");
+    await until(first, "document.body.dataset.keptStep === '0' && document.body.dataset.hand === 'yes'");
+    assert.ok(Number(keptStep) > 0 && await first.$$eval("#kept option", (options) => options.some(({ text }) => /^stroke,/.test(text))));
+    assert.deepEqual(dialogs, [], "kept sand is left without a question");
     // A full disk in a private window: the sand stays, the page says so, and asks before it is left. Chromium looks at
     // the quota anew when it was too small, so the quota is small from the start.
     const private_ = await newPage(await browser.createBrowserContext()), control = await private_.createCDPSession();
@@ -144,6 +152,22 @@ try {
     await kept(private_);
     await private_.close();
 
+    await browser.close();
+
+    // A browser that refuses IndexedDB, because its user forbids cookies.
+    const profile = path.join(folder, "profile", "Default");
+    fs.mkdirSync(profile, { recursive: true });
+    fs.writeFileSync(path.join(profile, "Preferences"), JSON.stringify({ profile: { default_content_setting_values: { cookies: 2 } } }));
+    const refusing = await launch("chromium", { userDataDir: path.dirname(profile) });
+    try {
+        const page = await newPage(refusing);
+        await openGrid(page);
+        await stroke(page, 0.5);
+        await until(page, "/^This browser does not keep this sand: [^.]+\\. Save the session before you leave\\.$/.test(document.getElementById('say').textContent)");
+        assert.deepEqual([(await data(page)).unkept, (await data(page)).digging], ["true", "flat"]);
+    } finally {
+        await refusing.close();
+    }
     assert.deepEqual(complaints.flat().filter((line) => !/404|Not Found/.test(line)), []);
     console.log("kept sand continues after a reload, in another tab, on a full disk, and beside damaged sand");
 } finally {

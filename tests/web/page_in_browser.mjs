@@ -46,6 +46,12 @@ async function firstScreen() {
     await page.click("#scenes button:nth-child(3)");
     await digs("writing");
     assert.equal(await page.$eval("#scene", (list) => list.value), "writing", "the list says what is dug");
+    // The scene's tool has 0.04. The page begins with 1/40 of the side, and `0` gives that of the scene.
+    await until("document.getElementById('size').textContent === 'Radius 0.0500'");
+    assert.equal((await data()).unkept, "false", "a tool is no sand");
+    await page.focus("#sand");
+    await page.keyboard.press("0");
+    await until("document.getElementById('size').textContent === 'Radius 0.0400'");
     await page.mouse.click(...await at(0.5, 0.5));
     assert.deepEqual([await seen("#ghost"), await seen("#scenes")], [false, false]);
     await (await page.$("#files")).uploadFile(grid);
@@ -130,9 +136,9 @@ async function keys() {
     await page.keyboard.press("w");
     await page.select("#word", "humidity");
     await until(`document.getElementById("number").value === "0.1"`);
-    await page.keyboard.press("0");
+    await page.keyboard.press("0");  // the tool of this grid is smaller than the one with which the page begins
     await tool("1", "sphere");
-    await until(`document.getElementById("size").textContent === "${small}" && document.getElementById("number").value === "0"`);
+    await until(`document.getElementById("size").textContent === "Radius 1.50" && document.getElementById("number").value === "0"`);
 
     await page.keyboard.press("Space");
     await until("/^Paused/.test(document.getElementById('say').textContent)");

@@ -26,6 +26,7 @@ export class DigPage {
     private readonly panel: DigPanel;
     private readonly kept: KeptList;
     private readonly pointer?: DigPointer;
+    private ready = false;       // whether the hand can dig
     private paused = false;
     private greeting = "";       // sentence with which the hand begins
     private sand?: SandMessage;  // none while the page shows a journal
@@ -67,13 +68,17 @@ export class DigPage {
         if (this.view) {
             this.view.eye.digging = true;
         }
-        this.paused = false;
-        const since = opened.since === undefined ? "" : `This is your sand of ${timeOf(opened.since)}. More, New sand begins anew, and keeps this sand.`;
+        this.paused = this.ready = false;
+        const since = opened.since === undefined ? "" : `This is your sand of ${timeOf(opened.since)}. "New sand" in "More" begins anew, and this sand stays.`;
         this.greeting = [opened.note, since, `${opened.name}: draw with a finger or the left button. H shows all keys.`,
                          opened.shortcoming, this.noPicture].filter((part) => part !== "").join(" ");
     }
     private beginHand({ step, hash }: HandMessage): void {
         Object.assign(document.body.dataset, { hand: "yes", goesOnStep: step, goesOnHash: hash });
+        this.ready = true;
+        if (step === 0) {
+            this.panel.beginLargeEnough();
+        }
         sayThis(this.greeting);
     }
     /** The page shows a journal from now on. */
@@ -101,6 +106,9 @@ export class DigPage {
     /** Does what a key asks for, while the page digs. */
     act(action: KeyAction, index: number): void {
         const { panel, page } = this;
+        if (!this.ready) {
+            return;
+        }
         switch (action) {
             case "tool": return panel.chooseTool(index);
             case "larger": return panel.resizeBy(1);
@@ -120,7 +128,7 @@ export class DigPage {
         }
     }
     /** What the wheel changes. */
-    readonly wheel = { depth: (by: number) => this.panel.deepen(by), size: (by: number) => this.panel.resizeBy(-by) };
+    readonly wheel = { depth: (by: number) => this.ready && this.panel.deepen(by), size: (by: number) => this.ready && this.panel.resizeBy(-by) };
     private again(): void {
         if (this.kept.mayLeave()) {
             this.page.tell({ again: true });

@@ -15,6 +15,7 @@ const kPlain: Record<string, string> = {
     talus: "steepness, in degrees", "wet-talus": "steepness when wet, in degrees", humidity: "wetness, 0 to 1", cohesion: "height of an upright wet bank",
     band: "how much steeper sand at rest can be", "settling-time": "time to rest, in s",
 };
+const kUsableShare = 40, kLeastUsable = 2, kMostUsable = 128;  // radius: part of the field's shorter side, and limits in cells
 const kShortest = 2, kLongest = 0.25;  // length of the tool: cells, and share of the field's shorter side
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
@@ -24,6 +25,8 @@ export class DigPanel {
     private words?: Words;
     private material?: MaterialMessage;
     private ofScene?: Material;
+    private cell = 1;            // scene unit
+    private shorter = 1;         // side of the field, scene unit
     private limits = { least: 0, most: Infinity };  // radius, scene unit
 
     /**
@@ -76,6 +79,13 @@ export class DigPanel {
         const { heading } = this.material!.tool;
         if (heading !== undefined) {
             this.change("heading", ((heading + notches * kTurn) % 360 + 360) % 360);
+        }
+    }
+    /** Gives new sand a tool with which a person sees what they dig, by an edit. */
+    beginLargeEnough(): void {
+        const usable = Math.min(Math.max(this.shorter / kUsableShare, kLeastUsable * this.cell), kMostUsable * this.cell);
+        if (this.material!.tool.radius < usable) {
+            this.change("radius", usable);
         }
     }
     deepen(notches: number): void {
@@ -132,6 +142,8 @@ export class DigPanel {
             }
             this.scene = sand.name;
             this.ofScene = sand.sceneMaterial;
+            this.cell = sand.cell;
+            this.shorter = Math.min(sand.columns, sand.rows) * sand.cell;
             this.limits = { least: kShortest * sand.cell / 2, most: kLongest * Math.min(sand.columns, sand.rows) * sand.cell / 2 };
             input("depth").value = kUsualDepth;
             element<HTMLButtonElement>("undo").disabled = true;

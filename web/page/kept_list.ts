@@ -39,7 +39,7 @@ export class KeptList {
         Object.assign(document.body.dataset, { unkept, keptStep: kept.step, keptHash: kept.hash });
         const sentences = [...gone];
         if (unkept && why !== "" && why !== this.why) {
-            sentences.push(`This browser does not keep this sand: ${why}. Save the session before you leave.`);
+            sentences.push(`This browser does not keep this sand: ${why.replace(/\.$/, "")}. Save the session before you leave.`);
         }
         this.why = unkept ? why : "";
         if (sentences.length > 0) {

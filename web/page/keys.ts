@@ -6,8 +6,8 @@ import { findKey, type KeyAction } from "./key_list";
 export type Act = (action: KeyAction, index: number) => void;
 /** What a notch of the wheel changes: 1 towards the person, -1 away. */
 export interface Wheel {
-    depth(by: number): void;
-    size(by: number): void;
+    depth(by: number): unknown;
+    size(by: number): unknown;
 }
 
 /** Whether an element takes a key itself: a letter that is typed, or Space on a button. */
