@@ -93,7 +93,7 @@ function begun(browser, why = "") {
     const { sand, keeper, told } = begun(undefined, "it has no IndexedDB");
     sand.dig();
     keeper.work(sand, false);
-    assert.deepEqual([told.at(-1).unkept, told.at(-1).why], [true, "it has no IndexedDB"]);
+    assert.deepEqual([told.at(-1).unkept, told.at(-1).why, keeper.waits], [true, "it has no IndexedDB", false]);
     keeper.save(sand);
     keeper.work(sand, false);
     assert.equal(told.at(-1).unkept, false);
@@ -106,10 +106,11 @@ function begun(browser, why = "") {
     browser.refusal = Object.assign(new Error("x"), { name: "QuotaExceededError" });
     sand.dig();
     await keeper.flush(sand);
-    assert.deepEqual([told.at(-1).unkept, told.at(-1).why], [true, "its storage is full"]);
+    assert.deepEqual([told.at(-1).unkept, told.at(-1).why, keeper.waits], [true, "its storage is full", true]);
     browser.refusal = undefined;
     await keeper.flush(sand);
     assert.deepEqual([told.at(-1).unkept, told.at(-1).why, told.at(-1).gone], [false, "", ["The sand is kept again."]]);
     assert.deepEqual(browser.pieces, [{ id: "a", offset: 0, length: 110 }]);
+    assert.equal(keeper.waits, false);
 }
 console.log("the page keeps what the hand has dug, and says so if it cannot");

@@ -75,7 +75,7 @@ export class HandSource implements StepSource {
             this.longest = 0;
         }
         this.keeper.work(this.replica, this.pressed);
-        return this.paused || this.resting > kMostResting ? undefined : Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
+        return (this.paused || this.resting > kMostResting) && !this.keeper.waits ? undefined : Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
     }
 
     private step(): void {

@@ -31,6 +31,7 @@ export class Keeper {
     private wanted = false;         // a piece as soon as possible
     private why: string;
     private told = "";
+    private unkept = false;
     private kept = { step: 0, hash: "" };
 
     /** `data` is absent if the browser keeps nothing, and `why` then says so. `tell` gets each change. */
@@ -61,6 +62,8 @@ export class Keeper {
     }
     end(): void { this.ended = true; }
 
+    /** Whether sand waits to be written, such as on a full disk. work() must be called again then. */
+    get waits(): boolean { return this.data !== undefined && this.unkept; }
     /** Writes the next piece if it is time. Call it between steps. */
     work(replica: Replica, engaged: boolean): void {
         this.report(replica);
@@ -108,7 +111,7 @@ export class Keeper {
 
     private report(replica: Replica, gone: string[] = []): void {
         const { kept, why } = this, { id } = this.session;
-        const unkept = replica.dug && replica.touched !== this.touched && replica.touched !== this.saved, now = JSON.stringify([unkept, why, kept]);
+        const unkept = this.unkept = replica.dug && replica.touched !== this.touched && replica.touched !== this.saved, now = JSON.stringify([unkept, why, kept]);
         if (now !== this.told || gone.length > 0) {
             this.told = now;
             this.tell({ id, unkept, why, kept, gone });
