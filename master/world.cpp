@@ -45,11 +45,13 @@ std::function<void(double)> told(const lockstep::Cluster& cluster, std::string p
             progress.emplace(phase, what, [](const std::string& line) { host::printLine("{}", line); });
         }
         progress->done(share);
-        if (share < last) {
-            cluster.progressEnds();
+        if (share < last || share >= 1) {
+            cluster.progressEnds();  // work follows that cannot tell its progress
         }
         last = share;
-        cluster.progress(work, share);
+        if (share < 1) {
+            cluster.progress(work, share);
+        }
     };
 }
 

@@ -250,6 +250,9 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
             return restored;
         } catch (const OtherSand& error) {
             host::printLine("{}: it is left out: {}", file.string(), error.what());
+            if (how.progress) {
+                how.progress(1);  // the next checkpoint is read without progress
+            }
         }
     }
     RestoredSand restored{start, 0, 0, volume, {}};
@@ -282,6 +285,9 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
             fmt::format("{}; sandwall-replay {} --recover NEW/session.journal saves the intact part, and --out NEW "
                         "--resume continues it",
                         error.what(), journal.string()));
+    }
+    if (progress.read) {
+        progress.read(1);
     }
     session.place = reader.place();
     session.cutBytes = reader.tornBytes();

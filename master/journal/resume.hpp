@@ -42,7 +42,8 @@ struct Restoring {
     // Called after each step and after each record, with the last step; may throw to end the replay.
     std::function<void(std::uint64_t)> each{};
     // Called after each step and after each record, with the part of the records that are read and of the steps that
-    // are replayed, 0 to 1. A replay that begins again from an earlier checkpoint begins with a smaller part.
+    // are replayed, 0 to 1. Also called with 1 when a checkpoint is left out. A replay that begins again from an
+    // earlier one begins with a smaller part.
     std::function<void(double)> progress{};
 };
 
@@ -85,8 +86,8 @@ struct ResumedSession {
     std::optional<Outvoted> outvoted;  // if the wall had shown the sand of a wrong majority when the session stopped
 };
 
-/// Functions that readSession() calls with the part of some work that is done, 0 to 1. Each may be empty. A replay that
-/// begins again calls `replayed` with a smaller part.
+/// Functions that readSession() calls with the part of some work that is done, 0 to 1. Each may be empty. Each is
+/// called with 1 when its work ends. A replay that begins again calls `replayed` with a smaller part.
 struct ResumeProgress {
     std::function<void(double)> read{};      // reading the records of the journal
     std::function<void(double)> replayed{};  // replaying the steps of the journal

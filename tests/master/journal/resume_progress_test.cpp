@@ -18,7 +18,7 @@ TEST_F(Resume, TellsHowMuchOfTheJournalIsReadAndReplayed) {
                                              {.read = [&](double share) { read.push_back(share); },
                                               .replayed = [&](double share) { replayed.push_back(share); }});
     EXPECT_EQ(session->replayedSteps, 40U);
-    EXPECT_EQ(read.size(), 20U) << "of each record";
+    EXPECT_EQ(read.size(), 20U + 1) << "of each record, and at the end";
     EXPECT_GE(replayed.size(), 40U) << "of each step";
     for (const auto* shares : {&read, &replayed}) {
         EXPECT_TRUE(std::is_sorted(shares->begin(), shares->end()));
