@@ -300,7 +300,6 @@ bool Replica::putBack(const Edit& edit) {
             const std::shared_ptr<const SurfaceCopy> loaded = surface_->reader()(*edit.sand);
             surface_->forget();
             surface_->replace(*loaded);
-            surface_->stopMoving();
         } catch (const base::FormatError& error) {  // in every replica alike
             leftOut_ = std::string("its load was ignored: ") + error.what();
             return false;

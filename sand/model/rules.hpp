@@ -15,7 +15,7 @@ namespace sand {
 
 /// Version of the algorithm. It increases with every change to what a step does to the sand. Programs of different
 /// versions refuse to run together.
-inline constexpr std::uint32_t kAlgorithmVersion = 16;
+inline constexpr std::uint32_t kAlgorithmVersion = 17;
 
 /// Law by which sand slides on a height field. The documents call `isotropic` G and `plainIsotropic` plain G;
 /// docs/sand.md states both laws.

@@ -127,8 +127,6 @@ public:
         constexpr std::int64_t kVisits = 1536, kLeastCells = 512 * 512;
         return kVisits * std::max(sweepCost(), kLeastCells);
     }
-    /// Forgets which sand moves, if that is part of the state beside fluxes.
-    virtual void stopMoving() {}
     /// Restores the sand that the scene began with, and sets the outflow to 0.
     virtual void reset() = 0;
 

@@ -41,7 +41,6 @@ public:
     void changeRules(const Rules& rules) override;
     [[nodiscard]] bool settle() override;
     [[nodiscard]] std::int64_t sweepCost() const override;
-    void stopMoving() override { sandMoved(layer_.stopMoving()); }
     void reset() override;
 
     void keep() override { beforeStroke_.keep(layer_, state_); }

@@ -10,6 +10,7 @@
 #include "base/float_environment.hpp"
 #include "sand/surface_factory.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
+#include "sand/tin/surface.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/sand/tin/tin_replica.hpp"
 #include "tests/support/machine/other_floats.hpp"
@@ -156,6 +157,28 @@ TEST_F(TinReplica, ResetUndoAndLoadPutTheSandBack) {
     EXPECT_EQ(replica.copySand()->encode(), saved);
     replica.apply({.epoch = 1, .number = 24, .engaged = true, .path = {{8000, 8000, 2000}}});
     replica.apply({.epoch = 1, .number = 25, .engaged = false, .path = {}, .edit = Edit::loaded(saved)});
+    EXPECT_EQ(replica.copySand()->encode(), saved);
+}
+
+// Sand at rest starts to slide only on a steeper slope than sand that moves.
+TEST_F(TinReplica, ALoadRestoresWhichSandMoves) {
+    Replica replica(scene());
+    for (const Step& step : session(3, 8)) {
+        replica.apply(step);
+    }
+    const auto moving = [&replica] {
+        const auto& all = dynamic_cast<const sand::tin::TinSurface&>(replica.surface()).layer().moving();
+        return std::count(all.begin(), all.end(), 1);
+    };
+    const auto moved = moving();
+    ASSERT_GT(moved, 0);
+    const base::Bytes saved = replica.copySand()->encode();
+    for (std::uint64_t number = 9; number < 20; ++number) {
+        replica.apply({.epoch = 1, .number = number, .engaged = false, .path = {}});
+    }
+    ASSERT_NE(replica.copySand()->encode(), saved);
+    replica.apply({.epoch = 1, .number = 20, .engaged = false, .path = {}, .edit = Edit::loaded(saved)});
+    EXPECT_EQ(moving(), moved);
     EXPECT_EQ(replica.copySand()->encode(), saved);
 }
 
