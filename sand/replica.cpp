@@ -373,7 +373,8 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes, const std::functi
     const auto stroke = beforeStroke.empty() ? nullptr : read(beforeStroke);
     const auto sand = read(reader.rest());
     // From here on only std::bad_alloc can be thrown.
-    surface_->forget();  // before the sand changes, so that nothing of it is kept
+    surface_->forget();    // before the sand changes, so that nothing of it is kept
+    surface_->follow({});  // the sand may have been wrong
     rules_.tuning = head.tuning;
     surface_->changeRules(rules_);
     surface_->replace(*sand);

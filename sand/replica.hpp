@@ -103,6 +103,9 @@ public:
     /// Applies the next step. Calls `ended` at the end of each part of it, so that the caller can measure the parts and
     /// the sweeps. It is not called for a step that is left out or that restores sand.
     void apply(const Step& step, const std::function<void(StepPart)>& ended);
+    /// Returns why apply() would leave out the whole of `step`, the next step, because of the owed sweeps, or an empty
+    /// text.
+    [[nodiscard]] std::string whyRefused(const Step& step) const;
     /// Returns the work of the last step that was applied. The number of sweeps may differ between equal replicas.
     [[nodiscard]] const StepWork& lastWork() const { return lastWork_; }
     /// Returns one line about what the last apply() has left out: an ignored load, an ignored path, or the whole step.
@@ -194,11 +197,14 @@ public:
     [[nodiscard]] StateCopy copyState() const;
     /// Begins a copy of the whole state of this moment, which takes no longer for a large field. Steps copy the sand
     /// that they change, and continueCopy() copies the other sand. Another thread may have the copy when it is
-    /// complete. The replica completes only the copy that was begun last.
+    /// complete. The replica completes all copies that their owners still hold.
     [[nodiscard]] StateCopy beginCopy() const;
-    /// Copies at least `cells` further cells, or all that are left. Returns false if no begun copy lacks
-    /// any. A copy of this replica, or another one in its place, has begun none.
+    /// Copies at least `cells` further cells of the oldest begun copy, or all that it lacks. Returns false if no begun
+    /// copy lacks any. A copy of this replica, or another one in its place, has begun none.
     bool continueCopy(std::int64_t cells) const { return surface_->continueCopy(cells); }
+    /// Returns what makes records of the sand. They are no part of the state. decodeState() follows no record further,
+    /// because the sand before it may have been wrong.
+    [[nodiscard]] SurfaceRecorder& recorder() { return *surface_; }
     /// Returns the whole state as compressed bytes, from which another replica can continue.
     [[nodiscard]] base::Bytes encodeState() const { return copyState().encode(); }
     /// Replaces the whole state by what encodeState() wrote. Throws base::FormatError if the bytes are not a state of
@@ -233,8 +239,6 @@ private:
     [[nodiscard]] Owed owedBy(const Step& step) const;
     /// Returns the sweeps in which a step without Step::sweeps pays `owed`.
     [[nodiscard]] std::int32_t wholeOf(const Owed& owed) const;
-    /// Returns why `step` must be left out because of the owed sweeps, or an empty text.
-    [[nodiscard]] std::string whyRefused(const Step& step) const;
     void tune(const Tuning& tuning);
     /// Displaces the sand below the tool at its current position.
     void press();

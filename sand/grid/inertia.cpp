@@ -80,6 +80,15 @@ void Inertia::putInto(CellArray& east, CellArray& north) const {
     }
 }
 
+std::int64_t Inertia::bytes() const {
+    auto bytes = static_cast<std::int64_t>(pieces_.capacity() * sizeof(Piece));
+    for (const Piece& piece : pieces_) {
+        bytes +=
+            (piece.east != nullptr ? piece.east->bytes() : 0) + (piece.north != nullptr ? piece.north->bytes() : 0);
+    }
+    return bytes;
+}
+
 void Inertia::encode(std::shared_ptr<const PackedCells> Piece::*fluxes, int columns, int rows, base::ByteWriter& writer,
                      const std::function<void()>& between) const {
     CellArray window(columns, kPiece);  // rows [first, first + kPiece), and at first the row beyond the southern rim

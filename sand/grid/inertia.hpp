@@ -42,6 +42,8 @@ public:
     void keep(const CellArray& east, const CellArray& north, const CellRect& cells);
     /// Writes the kept fluxes into `east` and `north`, whose fluxes must be 0.
     void putInto(CellArray& east, CellArray& north) const;
+    /// Returns the memory of the kept fluxes, which copies share [byte].
+    [[nodiscard]] std::int64_t bytes() const;
     [[nodiscard]] int undisturbed() const { return undisturbed_; }  // age of the inertia [sweep]
     /// Calls visit(cells) for each area whose fluxes are kept. It may begin at column or row -1.
     template <class Visit>

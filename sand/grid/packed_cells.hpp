@@ -21,6 +21,11 @@ public:
     [[nodiscard]] const CellRect& cells() const { return cells_; }
     /// Returns whether all numbers are 0.
     [[nodiscard]] bool isZero() const { return isZero_; }
+    /// Returns the memory that it takes [byte].
+    [[nodiscard]] std::int64_t bytes() const {
+        return static_cast<std::int64_t>(sizeof *this + groups_.capacity() * sizeof(Group) +
+                                         words_.capacity() * sizeof(std::uint32_t));
+    }
     /// Writes the numbers of rows [first, end) into `grid`, row `first` of them into its row `to`.
     void putInto(CellArray& grid, int first, int end, int to) const;
     void putInto(CellArray& grid) const { putInto(grid, cells_.y0, cells_.y1, cells_.y0); }

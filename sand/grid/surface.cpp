@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 
 #include "sand/grid/coarse_level.hpp"
+#include "sand/grid/record.hpp"
 #include "sand/grid/settle.hpp"
 #include "sand/model/grid_codec.hpp"
 
@@ -44,13 +46,57 @@ std::unique_ptr<Surface> GridSurface::clone() const {
 }
 
 void GridSurface::willChange(const CellRect& cells) {
-    beforeStroke_.willChange(field_, cells);
-    completeCopyOf(cells);
+    willChangeHeights(cells);
+    completeCopiesOf(cells);
 }
 
-void GridSurface::completeCopyOf(const CellRect& cells) const {
-    if (const std::shared_ptr<TileCopy> copy = begun_.get()) {
-        copy->willChange(field_, erosion_, cells);
+void GridSurface::willChangeHeights(const CellRect& cells) {
+    if (!beforeStroke_.any() && followed_.now().empty()) {
+        return;
+    }
+    const TileGrid grid(field_.bounds());
+    grid.forEach(cells, [&](std::size_t tile) {
+        std::shared_ptr<const PackedCells> packed;  // once for all that need it
+        const auto pack = [&] {
+            if (packed == nullptr) {
+                packed = std::make_shared<const PackedCells>(field_.cells(), grid.cellsOf(tile));
+            }
+            return packed;
+        };
+        beforeStroke_.willChangeTile(tile, pack);
+        for (const std::shared_ptr<SurfaceRecord>& record : followed_.now()) {
+            Record::of(*record).willChangeTile(tile, pack);
+        }
+    });
+}
+
+void GridSurface::willBecome(const HeightField& field) {
+    if (beforeStroke_.any() || !followed_.now().empty()) {
+        const TileGrid grid(field_.bounds());
+        for (std::size_t tile = 0; tile < grid.count(); ++tile) {
+            const CellRect cells = grid.cellsOf(tile);
+            bool differs = false;
+            for (int y = cells.y0; y < cells.y1 && !differs; ++y) {
+                differs = !std::equal(field.row(y) + cells.x0, field.row(y) + cells.x1, field_.row(y) + cells.x0);
+            }
+            if (differs) {
+                willChangeHeights(cells);
+            }
+        }
+    }
+    completeCopiesOf(field_.bounds());
+}
+
+void GridSurface::completeCopiesOf(const CellRect& cells) const {
+    begun_.forEach([&](TileCopy& copy) {
+        copy.willChange(field_, erosion_, cells);
+        return true;
+    });
+}
+
+void GridSurface::forgetEqual() {
+    for (const std::shared_ptr<SurfaceRecord>& record : followed_.now()) {
+        Record::of(*record).forgetEqual(field_);
     }
 }
 
@@ -133,7 +179,7 @@ Swept GridSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoi
     const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, probe);
     const std::int64_t before = erosion_.sweepsDone();
     std::function<void(const CellRect&)> changes;
-    if (beforeStroke_.any() || begun_.get() != nullptr) {
+    if (beforeStroke_.any() || begun_.any() || !followed_.now().empty()) {
         changes = [this](const CellRect& cells) { willChange(cells); };
     }
     const Erosion::Swept swept = erosion_.sweep(field_, part, tool == nullptr ? nullptr : &here, changes);
@@ -155,6 +201,7 @@ bool GridSurface::settle() {
     WorkLimit limit(mostSettlingWork());
     const Settled settled = sand::grid::settle(field_, rules_, nullptr, base::fastestCodePath(), &limit);
     outflow_ += settled.outflow;
+    forgetEqual();
     erosion_.touch(field_.bounds());
     touchAll();
     return settled.atRest;
@@ -164,9 +211,11 @@ void GridSurface::reset() {
     willChange(field_.bounds());
     base::ByteReader reader(*start_);
     decodeCells(reader, field_.bounds(), kMaxHeight, field_.cells());
+    forgetEqual();
     erosion_.resume({});
     outflow_ = 0;
     touchAll();
+    (void)followed_.restored();
 }
 
 std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
@@ -174,14 +223,18 @@ std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
 }
 
 void GridSurface::putBackKept() {
-    completeCopyOf(field_.bounds());  // all fluxes change, but only the heights of the stroke
+    completeCopiesOf(field_.bounds());  // all fluxes change, but only the heights of the stroke
     const std::vector<CellRect> changed = beforeStroke_.changed();
+    for (const CellRect& tile : changed) {
+        willChangeHeights(tile);
+    }
     beforeStroke_.putBackHeights(field_);
     for (const CellRect& tile : changed) {
         touch(tile);
     }
     erosion_.resume(beforeStroke_.inertia());
     outflow_ = beforeStroke_.outflow();
+    (void)followed_.restored();
 }
 
 std::shared_ptr<const SurfaceCopy> GridSurface::copy() const {
@@ -195,12 +248,50 @@ Surface::Copies GridSurface::beginCopy() const {
 }
 
 bool GridSurface::continueCopy(std::int64_t cells) const {
-    const std::shared_ptr<TileCopy> copy = begun_.get();
-    if (copy == nullptr) {
+    bool copied = false;
+    begun_.forEach([&](TileCopy& copy) {
+        copy.copyMore(field_, erosion_, cells);
+        copied = true;
         return false;
+    });
+    return copied;
+}
+
+std::shared_ptr<SurfaceRecord> GridSurface::record() {
+    auto record = std::make_shared<Record>(TileGrid(field_.bounds()).count(), erosion_.inertia(), outflow_);
+    SurfaceRecords all = followed_.now();
+    all.push_back(record);
+    followed_.follow(std::move(all));
+    return record;
+}
+
+std::shared_ptr<SurfaceRecord> GridSurface::recordLike(const SurfaceRecord& parts, const SurfaceRecord* moment) {
+    const TileGrid grid(field_.bounds());
+    const Record* const then = moment == nullptr ? nullptr : &Record::of(*moment);
+    auto like = then == nullptr ? std::make_shared<Record>(grid.count(), erosion_.inertia(), outflow_)
+                                : std::make_shared<Record>(grid.count(), then->inertia(), then->outflow());
+    for (std::size_t tile = 0; tile < grid.count(); ++tile) {
+        if (Record::of(parts).tiles()[tile] != nullptr) {
+            const bool has = then != nullptr && then->tiles()[tile] != nullptr;
+            like->put(tile, has ? then->tiles()[tile]
+                                : std::make_shared<const PackedCells>(field_.cells(), grid.cellsOf(tile)));
+        }
     }
-    copy->copyMore(field_, erosion_, cells);
-    return true;
+    return like;
+}
+
+std::shared_ptr<const SurfaceCopy> GridSurface::beginCopyOf(const SurfaceRecords& records) {
+    const auto now = std::make_shared<TileCopy>(field_, erosion_, outflow_);
+    begun_.begin(now);
+    KeptCopy::Tiles tiles = Record::of(*records.front()).tiles();
+    for (const std::shared_ptr<SurfaceRecord>& record : records) {
+        const KeptCopy::Tiles& own = Record::of(*record).tiles();
+        for (std::size_t tile = 0; tile < own.size(); ++tile) {
+            tiles[tile] = own[tile] != nullptr ? own[tile] : tiles[tile];
+        }
+    }
+    const Record& last = Record::of(*records.back());
+    return std::make_shared<const KeptCopy>(std::move(tiles), last.inertia(), last.outflow(), now);
 }
 
 SurfaceReader GridSurface::readerThatCalls(std::function<void(std::size_t)> decoded) const {
@@ -213,11 +304,12 @@ SurfaceReader GridSurface::readerThatCalls(std::function<void(std::size_t)> deco
 
 void GridSurface::replace(const SurfaceCopy& copy) {
     const auto& sand = dynamic_cast<const Snapshot&>(copy);
-    willChange(field_.bounds());
+    willBecome(sand.field);
     field_ = sand.field;
     erosion_.resume(sand.inertia);
     outflow_ = sand.outflow;
     touchAll();
+    (void)followed_.restored();
 }
 
 std::uint64_t GridSurface::hash() {
@@ -255,7 +347,7 @@ std::vector<std::int32_t> GridSurface::valuesOf(int tile) const {
 }
 
 void GridSurface::corrupt(int column, int row, int bit) {
-    completeCopyOf(
+    completeCopiesOf(
         {column, row, column + 1, row + 1});  // not the undo, because a fault of the memory changes it as well
     field_.setHeight(column, row, field_.height(column, row) ^ (std::int32_t{1} << bit));
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/displacement.hpp"
@@ -51,6 +52,14 @@ public:
     [[nodiscard]] SurfaceReader readerThatCalls(std::function<void(std::size_t)> decoded) const override;
     void replace(const SurfaceCopy& copy) override;
 
+    [[nodiscard]] std::shared_ptr<SurfaceRecord> record() override;
+    void follow(SurfaceRecords records) override { followed_.follow(std::move(records)); }
+    void followAfterRestore(SurfaceRecords records) override { followed_.followAfterRestore(std::move(records)); }
+    [[nodiscard]] const SurfaceRecords& followed() const override { return followed_.now(); }
+    [[nodiscard]] std::shared_ptr<SurfaceRecord> recordLike(const SurfaceRecord& parts,
+                                                            const SurfaceRecord* moment) override;
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> beginCopyOf(const SurfaceRecords& records) override;
+
     [[nodiscard]] std::int64_t outflow() const override { return outflow_; }        // [unit · cell]
     [[nodiscard]] std::int64_t volume() const override { return field_.volume(); }  // [unit · cell]
     [[nodiscard]] bool settled() const override { return erosion_.settled(); }
@@ -74,10 +83,16 @@ public:
     [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
-    /// Must be called before heights or fluxes of `cells` change. Undo and a begun copy take their sand.
+    /// Must be called before heights or fluxes of `cells` change. Undo, records and begun copies take their sand.
     void willChange(const CellRect& cells);
-    /// Lets a begun copy take the sand of `cells`, if it lacks it.
-    void completeCopyOf(const CellRect& cells) const;
+    /// Must be called before heights of `cells` change, beside completeCopiesOf().
+    void willChangeHeights(const CellRect& cells);
+    /// Must be called before the heights become those of `field`.
+    void willBecome(const HeightField& field);
+    /// Lets begun copies take the sand of `cells`, if they lack it.
+    void completeCopiesOf(const CellRect& cells) const;
+    /// Lets records forget tiles that a change of the whole field has left alone.
+    void forgetEqual();
     /// Records a change of `cells` for hash and takeChange(). Call willChange() before it.
     void touch(const CellRect& cells);
     /// Records a change of the whole field.
@@ -94,7 +109,8 @@ private:
     std::int64_t outflow_ = 0;
     std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; clones share them
     Undo beforeStroke_;                         // sand for an undo
-    mutable BegunCopy begun_;                   // no part of the sand
+    mutable BegunCopies begun_;                 // no part of the sand
+    FollowedRecords followed_;                  // no part of the sand
     std::optional<BlockMarks> changed_;         // blocks changed since takeChange(); nullopt: all
 };
 

@@ -80,8 +80,8 @@ void TileCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>&
 
 std::size_t TileCopy::stripes() const { return stripesOfTiles(grid_, inertia_); }
 
-KeptCopy::KeptCopy(const Undo& undo, std::shared_ptr<const TileCopy> now)
-    : heights_(undo.tiles()), inertia_(undo.inertia()), outflow_(undo.outflow()), now_(std::move(now)) {}
+KeptCopy::KeptCopy(Tiles tiles, Inertia inertia, std::int64_t outflow, std::shared_ptr<const TileCopy> now)
+    : heights_(std::move(tiles)), inertia_(std::move(inertia)), outflow_(outflow), now_(std::move(now)) {}
 
 void KeptCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const {
     const auto heightsOf = [this](std::size_t tile) -> const PackedCells& {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "sand/grid/erosion.hpp"
@@ -52,45 +53,69 @@ private:
     std::size_t next_ = 0;  // copyMore() has visited all tiles before this one
 };
 
-/// The sand that was kept for an undo at the moment of a TileCopy. Shares its tiles, and those of the undo.
+/// Earlier sand: that of a TileCopy, with other tiles in place of its own. Shares all tiles.
 class KeptCopy final : public SurfaceCopy {
 public:
-    KeptCopy(const Undo& undo, std::shared_ptr<const TileCopy> now);
+    using Tiles = std::vector<std::shared_ptr<const PackedCells>>;  // null: that of `now`
+
+    KeptCopy(Tiles tiles, Inertia inertia, std::int64_t outflow /* [unit · cell] */,
+             std::shared_ptr<const TileCopy> now);
+    /// Takes the sand that is kept for an undo.
+    KeptCopy(const Undo& undo, std::shared_ptr<const TileCopy> now)
+        : KeptCopy(undo.tiles(), undo.inertia(), undo.outflow(), std::move(now)) {}
     [[nodiscard]] bool complete() const override { return now_->complete(); }
     void encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const override;
     [[nodiscard]] std::size_t stripes() const override;
 
 private:
-    std::vector<std::shared_ptr<const PackedCells>> heights_;  // of each tile; null: those of now_
+    Tiles heights_;
     Inertia inertia_;
     std::int64_t outflow_;  // [unit · cell]
     std::shared_ptr<const TileCopy> now_;
 };
 
-/// The TileCopy that a surface completes. A copy of a surface completes none.
-class BegunCopy {
+/// The TileCopies that a surface completes, the oldest first. A copy of a surface completes none.
+class BegunCopies {
 public:
-    BegunCopy() = default;
-    BegunCopy(const BegunCopy&) {}
-    BegunCopy& operator=(const BegunCopy& other) {
+    BegunCopies() = default;
+    BegunCopies(const BegunCopies&) {}
+    BegunCopies& operator=(const BegunCopies& other) {
         if (this != &other) {
-            copy_.reset();
+            copies_.clear();
         }
         return *this;
     }
-    BegunCopy(BegunCopy&&) noexcept = default;
-    BegunCopy& operator=(BegunCopy&&) noexcept = default;
-    ~BegunCopy() = default;
+    BegunCopies(BegunCopies&&) noexcept = default;
+    BegunCopies& operator=(BegunCopies&&) noexcept = default;
+    ~BegunCopies() = default;
 
-    void begin(const std::shared_ptr<TileCopy>& copy) { copy_ = copy; }
-    /// Returns the copy. Returns null if it is complete or was dropped.
-    [[nodiscard]] std::shared_ptr<TileCopy> get() const {
-        const std::shared_ptr<TileCopy> copy = copy_.lock();
-        return copy != nullptr && !copy->complete() ? copy : nullptr;
+    void begin(const std::shared_ptr<TileCopy>& copy) {
+        forgetOthers();
+        copies_.push_back(copy);
     }
+    /// Calls visit(copy) for each copy that is neither complete nor dropped, until it returns false. Forgets the
+    /// others.
+    template <class Visit>
+    void forEach(const Visit& visit) {
+        forgetOthers();
+        for (const std::weak_ptr<TileCopy>& begun : copies_) {
+            if (const std::shared_ptr<TileCopy> copy = begun.lock(); copy != nullptr && !visit(*copy)) {
+                return;
+            }
+        }
+    }
+    /// Returns whether there may be such a copy.
+    [[nodiscard]] bool any() const { return !copies_.empty(); }
 
 private:
-    std::weak_ptr<TileCopy> copy_;
+    void forgetOthers() {
+        std::erase_if(copies_, [](const std::weak_ptr<TileCopy>& begun) {
+            const std::shared_ptr<TileCopy> copy = begun.lock();
+            return copy == nullptr || copy->complete();
+        });
+    }
+
+    std::vector<std::weak_ptr<TileCopy>> copies_;
 };
 
 }  // namespace sand::grid

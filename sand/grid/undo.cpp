@@ -45,9 +45,8 @@ void Undo::willChange(const HeightField& field, const CellRect& cells) {
         return;
     }
     kept_->grid.forEach(cells, [&](std::size_t tile) {
-        if (kept_->tiles[tile] == nullptr) {
-            kept_->tiles[tile] = std::make_shared<const PackedCells>(field.cells(), kept_->grid.cellsOf(tile));
-        }
+        willChangeTile(tile,
+                       [&] { return std::make_shared<const PackedCells>(field.cells(), kept_->grid.cellsOf(tile)); });
     });
 }
 

@@ -34,6 +34,13 @@ public:
 
     /// Must be called before heights in `cells` of `field` change.
     void willChange(const HeightField& field, const CellRect& cells);
+    /// Must be called before heights of a tile change, in place of willChange(). `pack` returns the tile's heights.
+    template <class Pack>
+    void willChangeTile(std::size_t tile, const Pack& pack) {
+        if (kept_ && kept_->tiles[tile] == nullptr) {
+            kept_->tiles[tile] = pack();
+        }
+    }
     /// Returns a copy of the kept sand. Requires any(). `field` is the current sand.
     [[nodiscard]] Snapshot copy(const HeightField& field) const;
     /// Returns the height of a cell in the kept sand [unit]. Requires any(). Unpacks a tile only if the last call has

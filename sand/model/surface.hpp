@@ -18,6 +18,7 @@
 #include "sand/model/rules.hpp"
 #include "sand/model/step.hpp"
 #include "sand/model/surface_data.hpp"
+#include "sand/model/surface_record.hpp"
 #include "sand/model/tool.hpp"
 
 namespace sand {
@@ -84,9 +85,8 @@ struct HeightSpan {
 
 /// The sand of one replica: a height field or a TIN. Only Replica changes it: with steps, or as a whole when it loads a
 /// state. Not thread-safe.
-class Surface {
+class Surface : public SurfaceRecorder {
 public:
-    virtual ~Surface() = default;
     /// Returns a copy of the sand and of all that later steps depend on. The copy's first takeChange() returns a whole
     /// change.
     [[nodiscard]] virtual std::unique_ptr<Surface> clone() const = 0;
@@ -149,13 +149,13 @@ public:
         std::shared_ptr<const SurfaceCopy> sand, kept;
     };
     /// Begins snapshots of this moment, which are only for encodeInto(). Parts of the sand are copied before they next
-    /// change, and the other parts by continueCopy(). A surface completes only the snapshots that were begun last.
+    /// change, and the other parts by continueCopy(). A surface completes all snapshots that their owners still hold.
     ///
     /// Until complete(), the snapshots belong to the thread of the surface. Then they never change again, and any
     /// thread may read them.
     [[nodiscard]] virtual Copies beginCopy() const { return {copy(), kept()}; }
-    /// Copies at least `cells` further cells, or all that are left, into the snapshots that were begun last. Returns
-    /// false if they are complete, or if there are none.
+    /// Copies at least `cells` further cells, or all that are left, into the oldest begun snapshot that is not
+    /// complete. Returns false if there is none.
     virtual bool continueCopy(std::int64_t /* cells */) const { return false; }
     /// Returns the function that decodes snapshots for this surface.
     [[nodiscard]] SurfaceReader reader() const { return readerThatCalls({}); }

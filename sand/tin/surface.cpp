@@ -84,6 +84,7 @@ void TinSurface::reserve() {
     erosion_.reserve(vertices);
     hash_.reserve(vertices);
     beforeStroke_.reserve(vertices);
+    records_.reserve(vertices);
     neighbourhood_->reserve(vertices);
     coarsening_.reserve(vertices);
 }
@@ -106,6 +107,8 @@ void TinSurface::meshChanged() {
     hash_.touchTriangles(layer_, change.triangles);
     beforeStroke_.touch(change.vertices);
     beforeStroke_.touchTriangles(change.triangles);
+    records_.touch(change.vertices);
+    records_.touchTriangles(change.triangles);
     if (detail_.removals > 0) {
         coarsening_.touch(layer_.triangles(), change);
     }
@@ -138,6 +141,7 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
     }
     hash_.touch(layer_, vertices);
     beforeStroke_.touch(vertices);
+    records_.touch(vertices);
     if (changed_) {
         addTo(changed_->vertices, vertices);
     }
@@ -262,6 +266,11 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     coarsening_.forget();
     changed_.reset();
     lastFound_ = kNoNumber;
+    records_.replaced(layer_);
+}
+
+std::shared_ptr<SurfaceRecord> TinSurface::recordLike(const SurfaceRecord& parts, const SurfaceRecord* moment) {
+    return records_.recordLike(layer_, state_, Record::of(parts), moment == nullptr ? nullptr : &Record::of(*moment));
 }
 
 void TinSurface::audit(int tiles) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "sand/model/surface.hpp"
@@ -10,6 +11,7 @@
 #include "sand/tin/geometry/surface_view.hpp"
 #include "sand/tin/geometry/tin_start.hpp"
 #include "sand/tin/mesh/neighbourhood.hpp"
+#include "sand/tin/record.hpp"
 #include "sand/tin/refine/coarsening.hpp"
 #include "sand/tin/snapshot.hpp"
 #include "sand/tin/tile_hash.hpp"
@@ -53,6 +55,18 @@ public:
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
     [[nodiscard]] SurfaceReader readerThatCalls(std::function<void(std::size_t)> decoded) const override;
     void replace(const SurfaceCopy& copy) override;
+
+    [[nodiscard]] std::shared_ptr<SurfaceRecord> record() override { return records_.record(layer_, state_); }
+    void follow(SurfaceRecords records) override { records_.follow(layer_, std::move(records)); }
+    void followAfterRestore(SurfaceRecords records) override {
+        records_.followAfterRestore(layer_, std::move(records));
+    }
+    [[nodiscard]] const SurfaceRecords& followed() const override { return records_.followed(); }
+    [[nodiscard]] std::shared_ptr<SurfaceRecord> recordLike(const SurfaceRecord& parts,
+                                                            const SurfaceRecord* moment) override;
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> beginCopyOf(const SurfaceRecords& records) override {
+        return records_.copyOf(layer_, records);
+    }
 
     [[nodiscard]] std::int64_t outflow() const override { return state_.outflow; }
     [[nodiscard]] std::int64_t volume() const override { return static_cast<std::int64_t>(layer_.volume()); }
@@ -103,6 +117,7 @@ private:
     TileHash hash_;
     std::optional<SurfaceView> view_;  // of layer_, created again when layer_ is replaced
     Undo beforeStroke_;
+    Records records_;                           // no part of the sand
     std::optional<TinChange> changed_;          // since takeChange(); nullopt: everything
     std::optional<Displacement> displacement_;  // for the tool of the last displacementOf()
     std::shared_ptr<Neighbourhood> neighbourhood_ = std::make_shared<Neighbourhood>();

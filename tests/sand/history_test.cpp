@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: Apache-2.0
+// Undo and redo of many strokes and edits: the sand at each stop is that on the way there.
+#include "sand/history.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/tin_scene.hpp"
+#include "tests/support/seed.hpp"
+
+namespace {
+
+using sand::Edit;
+using sand::History;
+using sand::Replica;
+using Move = History::Move;
+
+/// Sand at one moment: its bytes, with fluxes or with what moves, the hashes of its hash tiles, and the material.
+struct Stop {
+    base::Bytes sand;
+    std::vector<std::uint64_t> hashes;
+    std::int32_t threshold = 0;
+    friend bool operator==(const Stop&, const Stop&) = default;
+};
+
+/// A session with a history, and the stops to which undos and redos must return.
+class Session {
+public:
+    explicit Session(const scene::Scene& scene, std::int64_t mostBytes = History::kMostBytes)
+        : rules_(scene.rules), replica_(scene), history_(replica_, mostBytes) {
+        for (const double share : {1.0, 0.7, 0.5, 0.9}) {
+            thresholds_.push_back(static_cast<std::int32_t>(share * rules_.tuning.threshold));
+        }
+    }
+
+    [[nodiscard]] Stop here() {
+        (void)replica_.stateHash();
+        return {replica_.copySand()->encode(), replica_.hashTiles().tileHashes(), replica_.rules().tuning.threshold};
+    }
+    [[nodiscard]] Replica& replica() { return replica_; }
+    [[nodiscard]] const History& history() const { return history_; }
+    [[nodiscard]] std::size_t undos() const { return undo_.size(); }
+    [[nodiscard]] std::size_t redos() const { return redo_.size(); }
+
+    void apply(sand::Step step, const History::Intent& intent = {}) {
+        step.epoch = 1;
+        step.number = replica_.stepNumber() + 1;
+        history_.begin(replica_, step, intent, label_);
+        replica_.apply(step);
+        history_.end(replica_);
+        ASSERT_TRUE(replica_.leftOut().empty()) << replica_.leftOut();
+    }
+    void hover(int steps) {
+        for (int i = 0; i < steps; ++i) {
+            apply({});
+        }
+    }
+    /// Makes a stroke of some steps. The tool then lifts, unless it `stays`.
+    void stroke(std::mt19937& random, bool stays = false) {
+        beginEntry();
+        const auto within = [&](std::int32_t cells) {
+            return static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(cells * sand::kProbePerCell));
+        };
+        sand::ProbePoint at{within(rules_.columns), within(rules_.rows), -2 * sand::kProbePerCell};
+        for (unsigned steps = 1 + random() % 4; steps > 0; --steps) {
+            at.x += within(8) - 4 * sand::kProbePerCell;
+            at.y += within(8) - 4 * sand::kProbePerCell;
+            apply({.engaged = true, .path = {at}});
+        }
+        if (!stays) {
+            apply({});
+        }
+    }
+    void edit(const Edit& edit) {
+        beginEntry();
+        apply({.engaged = replica_.engaged(), .edit = edit});
+    }
+    void material(std::size_t label) {
+        if (label != label_) {
+            beginEntry();
+        }
+        tune(label, {});
+    }
+    void otherTool(std::int32_t radius) {
+        sand::Tuning tuning = replica_.rules().tuning;
+        tuning.tool.radius = radius;
+        apply({.engaged = replica_.engaged(), .edit = Edit::tuned(tuning)});
+    }
+
+    /// Undoes or redoes an entry as a master does, and hovers for some steps until the sand has been copied. Returns
+    /// false if there is nothing to undo or redo.
+    [[nodiscard]] bool move(Move move, std::mt19937& random) {
+        const auto how = history_.beginReturn(replica_, move);
+        if (!how) {
+            return false;
+        }
+        const bool engaged = replica_.engaged();
+        if (how->edit == Edit::undo) {
+            note(move);
+            apply({.engaged = engaged, .edit = Edit::undo}, how->intent);
+            return true;
+        }
+        while (!how->sand->complete()) {
+            if (random() % 4 == 0) {
+                apply({.engaged = engaged});
+            }
+            (void)replica_.continueCopy(4000);
+        }
+        const Edit load = Edit::loaded(how->sand->encode());
+        if (how->label != label_) {
+            note(move);
+            tune(how->label, how->intent);
+        } else {
+            note(move);
+        }
+        apply({.engaged = engaged, .edit = load}, how->intent);
+        return true;
+    }
+    /// Returns the stop to which the last move must have returned.
+    [[nodiscard]] const Stop& wanted() const { return wanted_; }
+
+private:
+    void beginEntry() {
+        undo_.push_back(here());
+        redo_.clear();
+        returned_.reset();
+        if (undo_.size() > History::kMost) {
+            undo_.erase(undo_.begin());
+        }
+    }
+    /// Moves between the stops. Sand that slides after a move does not change them.
+    void note(Move move) {
+        if (move == Move::undo) {
+            redo_.push_back(returned_ ? *returned_ : here());
+            wanted_ = std::move(undo_.back());
+            undo_.pop_back();
+            returned_ = wanted_;
+        } else {
+            undo_.push_back(*returned_);
+            wanted_ = std::move(redo_.back());
+            redo_.pop_back();
+            returned_ = redo_.empty() ? std::nullopt : std::optional(wanted_);
+        }
+    }
+    void tune(std::size_t label, const History::Intent& intent) {
+        label_ = label;
+        sand::Tuning tuning = replica_.rules().tuning;
+        tuning.threshold = tuning.startThreshold = thresholds_.at(label);
+        apply({.engaged = replica_.engaged(), .edit = Edit::tuned(tuning)}, intent);
+    }
+
+    sand::Rules rules_;
+    Replica replica_;
+    History history_;
+    std::vector<std::int32_t> thresholds_;  // by label
+    std::size_t label_ = 0;
+    std::vector<Stop> undo_, redo_;
+    std::optional<Stop> returned_;
+    Stop wanted_;
+};
+
+scene::Scene gridScene() {
+    std::mt19937 random(7);
+    scene::Scene scene = samples::flatScene(150, 140);  // of nine tiles
+    scene.terrain = samples::randomField(150, 140, 3 << 16, random);
+    return scene;
+}
+
+scene::Scene tinScene() {
+    scene::Scene scene = samples::tinScene();
+    scene.rules.tuning.tool.radius = 2 * sand::kProbePerCell;
+    return scene;
+}
+
+/// Makes an entry of some kind: strokes, and each edit.
+void makeEntry(Session& session, unsigned kind, const base::Bytes& saved, std::mt19937& random) {
+    switch (kind % 8) {
+        case 2:
+            session.edit(Edit::settle);
+            return;
+        case 3:
+            session.material(1 + random() % 3);
+            return;
+        case 5:
+            session.edit(Edit::reset);
+            return;
+        case 6:
+            session.edit(Edit::loaded(saved));
+            return;
+        default:
+            session.stroke(random);
+    }
+}
+
+class HistoryOf : public testing::TestWithParam<bool> {
+protected:
+    [[nodiscard]] static scene::Scene sceneOf(bool tin) { return tin ? tinScene() : gridScene(); }
+    scene::Scene scene_ = sceneOf(GetParam());
+};
+INSTANTIATE_TEST_SUITE_P(GridAndTin, HistoryOf, testing::Bool(),
+                         [](const auto& tin) { return tin.param ? "Tin" : "Grid"; });
+
+TEST_P(HistoryOf, TwentyMixedEditsReturnsToEachStop) {
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    std::mt19937 random(seed);
+    Session session(scene_);
+    const base::Bytes saved = session.replica().copySand()->encode();
+    for (unsigned entry = 0; entry < History::kMost; ++entry) {
+        ASSERT_NO_FATAL_FAILURE(makeEntry(session, entry, saved, random));
+        ASSERT_NO_FATAL_FAILURE(session.otherTool(static_cast<std::int32_t>(2 + entry % 3) * sand::kProbePerCell));
+        ASSERT_NO_FATAL_FAILURE(session.hover(static_cast<int>(random() % 3)));
+        ASSERT_EQ(session.history().undosLeft(), session.undos()) << "entry " << entry;
+    }
+    ASSERT_EQ(session.history().undosLeft(), History::kMost);
+    const Stop last = session.here();
+    for (unsigned round = 0; round < 2; ++round) {
+        for (std::size_t left = History::kMost; left > 0; --left) {
+            ASSERT_TRUE(session.move(Move::undo, random)) << left;
+            ASSERT_EQ(session.history().undosLeft(), left - 1);
+            ASSERT_EQ(session.history().redosLeft(), History::kMost - left + 1);
+            ASSERT_TRUE(session.here() == session.wanted()) << "undo with " << left << " left";
+        }
+        EXPECT_FALSE(session.move(Move::undo, random)) << "nothing is left";
+        for (std::size_t left = History::kMost; left > 0; --left) {
+            ASSERT_TRUE(session.move(Move::redo, random)) << left;
+            ASSERT_EQ(session.history().redosLeft(), left - 1);
+            ASSERT_TRUE(session.here() == session.wanted()) << "redo with " << left << " left";
+        }
+        EXPECT_FALSE(session.move(Move::redo, random)) << "nothing is left";
+    }
+    // Sand may have slid between the last step of the way there and the first undo.
+    EXPECT_EQ(session.here().threshold, last.threshold);
+}
+
+// Sand slides between the moves, tools stay in the sand, and entries come between undos and redos.
+TEST_P(HistoryOf, RandomMovesReturnsToEachStop) {
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    for (unsigned round = 0; round < 4; ++round) {
+        SCOPED_TRACE(round);
+        std::mt19937 random(seed + round);
+        Session session(scene_);
+        const base::Bytes saved = session.replica().copySand()->encode();
+        for (int i = 0; i < 60; ++i) {
+            const bool wasEngaged = session.replica().engaged();
+            const auto what = random() % 10;
+            if (what < 4) {
+                if (wasEngaged) {
+                    ASSERT_NO_FATAL_FAILURE(session.hover(1));
+                }
+                ASSERT_NO_FATAL_FAILURE(makeEntry(session, static_cast<unsigned>(random() % 8), saved, random));
+            } else if (what == 4 && !wasEngaged) {
+                ASSERT_NO_FATAL_FAILURE(session.stroke(random, true));
+            } else if (what == 5) {
+                ASSERT_NO_FATAL_FAILURE(session.hover(1));
+            } else {
+                const Move move = what % 2 == 0 ? Move::undo : Move::redo;
+                const std::size_t left = move == Move::undo ? session.undos() : session.redos();
+                ASSERT_EQ(session.move(move, random), left > 0) << i;
+                // A tool that is in the sand presses it again.
+                ASSERT_TRUE(left == 0 || wasEngaged || session.here() == session.wanted()) << i;
+            }
+            ASSERT_EQ(session.history().undosLeft(), session.undos()) << i;
+            ASSERT_EQ(session.history().redosLeft(), session.redos()) << i;
+        }
+    }
+}
+
+TEST_P(HistoryOf, ANewEntryEndsAllRedos) {
+    std::mt19937 random(3);
+    Session session(scene_);
+    session.stroke(random);
+    session.stroke(random);
+    ASSERT_TRUE(session.move(Move::undo, random));
+    ASSERT_EQ(session.history().redosLeft(), 1U);
+    session.otherTool(3 * sand::kProbePerCell);
+    EXPECT_EQ(session.history().redosLeft(), 1U) << "a change of the tool is no entry";
+    session.edit(Edit::settle);
+    EXPECT_EQ(session.history().redosLeft(), 0U);
+    EXPECT_FALSE(session.move(Move::redo, random));
+    ASSERT_TRUE(session.move(Move::undo, random));
+    EXPECT_TRUE(session.here() == session.wanted());
+}
+
+TEST_P(HistoryOf, TheNewestStrokeIsUndoneByTheEditUndo) {
+    std::mt19937 random(4);
+    Session session(scene_);
+    session.stroke(random);
+    session.stroke(random);
+    EXPECT_EQ(session.history().beginReturn(session.replica(), Move::undo)->edit, Edit::undo);
+    ASSERT_TRUE(session.move(Move::undo, random));
+    EXPECT_EQ(session.history().beginReturn(session.replica(), Move::undo)->edit, Edit::load);
+    session.stroke(random);
+    session.edit(Edit::settle);
+    EXPECT_EQ(session.history().beginReturn(session.replica(), Move::undo)->edit, Edit::load) << "of the settle";
+}
+
+// The tool rests in the sand, so that each undo goes one entry further back. When it moves, its stroke is an entry.
+TEST_P(HistoryOf, AToolThatStaysInTheSandKeepsItsStroke) {
+    std::mt19937 random(5);
+    Session session(scene_);
+    session.stroke(random);
+    session.stroke(random);
+    session.stroke(random, true);
+    ASSERT_TRUE(session.move(Move::undo, random));
+    EXPECT_EQ(session.history().undosLeft(), 2U);
+    EXPECT_EQ(session.history().redosLeft(), 1U);
+    sand::ProbePoint aside = session.replica().probe();
+    aside.x += sand::kProbePerCell;
+    session.apply({.engaged = true, .path = {aside}});
+    EXPECT_EQ(session.history().undosLeft(), 3U);
+    EXPECT_EQ(session.history().redosLeft(), 0U);
+    ASSERT_TRUE(session.history().beginReturn(session.replica(), Move::undo));
+    EXPECT_EQ(session.history().beginReturn(session.replica(), Move::undo)->edit, Edit::load);
+}
+
+TEST_P(HistoryOf, ALoadThatComesAfterANewStrokeIsAnEntry) {
+    std::mt19937 random(6);
+    Session session(scene_);
+    session.edit(Edit::settle);
+    const auto how = session.history().beginReturn(session.replica(), Move::undo);
+    ASSERT_TRUE(how);
+    (void)session.replica().continueCopy(1 << 20);
+    session.stroke(random);
+    const Stop after = session.here();
+    session.apply({.edit = Edit::loaded(how->sand->encode())}, how->intent);
+    EXPECT_EQ(session.history().undosLeft(), 3U) << "settle, stroke and load";
+    const auto back = session.history().beginReturn(session.replica(), Move::undo);
+    (void)session.replica().continueCopy(1 << 20);
+    session.apply({.edit = Edit::loaded(back->sand->encode())}, back->intent);
+    EXPECT_TRUE(session.here() == after) << "no sand is lost";
+}
+
+TEST_P(HistoryOf, TheOldestEntriesGoWhenTheRecordsTakeTooMuchMemory) {
+    std::mt19937 random(8);
+    Session plain(scene_);
+    for (int i = 0; i < 6; ++i) {
+        plain.stroke(random);
+    }
+    const std::int64_t half = plain.history().bytes() / 2;
+    ASSERT_GT(half, 0);
+    random.seed(8);
+    Session session(scene_, half);
+    for (int i = 0; i < 6; ++i) {
+        session.stroke(random);
+    }
+    const std::size_t left = session.history().undosLeft();
+    EXPECT_GT(left, 0U);
+    EXPECT_LT(left, 6U);
+    EXPECT_LE(session.history().bytes(), half);
+    // A redo takes memory, too, so that further old entries go.
+    while (session.history().undosLeft() > 0) {
+        ASSERT_TRUE(session.move(Move::undo, random));
+        EXPECT_TRUE(session.here() == session.wanted());
+        EXPECT_LE(session.history().bytes(), half);
+    }
+    EXPECT_FALSE(session.history().beginReturn(session.replica(), Move::undo));
+}
+
+// The sand before may have been wrong.
+TEST_P(HistoryOf, AReplicaThatIsHealedForgetsItsEntries) {
+    std::mt19937 random(9);
+    Session session(scene_);
+    session.stroke(random);
+    session.edit(Edit::settle);
+    session.replica().decodeState(session.replica().encodeState());
+    EXPECT_FALSE(session.history().beginReturn(session.replica(), Move::undo));
+    session.hover(1);
+    EXPECT_EQ(session.history().undosLeft(), 1U) << "the replica keeps its stroke";
+}
+
+TEST_P(HistoryOf, AStrokeFromBeforeTheHistoryIsUndoneOnce) {
+    std::mt19937 random(10);
+    Session session(scene_);
+    const Stop start = session.here();
+    session.stroke(random);
+    Replica resumed = session.replica();
+    History later(resumed);
+    ASSERT_EQ(later.undosLeft(), 1U);
+    const auto how = later.beginReturn(resumed, Move::undo);
+    ASSERT_TRUE(how);
+    ASSERT_EQ(how->edit, Edit::undo);
+    const sand::Step step{1, resumed.stepNumber() + 1, false, {}, Edit::undo};
+    later.begin(resumed, step, how->intent, 0);
+    resumed.apply(step);
+    later.end(resumed);
+    EXPECT_EQ(resumed.copySand()->encode(), start.sand);
+    EXPECT_EQ(later.undosLeft(), 0U);
+    EXPECT_EQ(later.redosLeft(), 0U);
+    EXPECT_NE(later.version(), how->intent.version);
+}
+
+// Other replicas have no history.
+TEST_P(HistoryOf, ChangesNoSand) {
+    std::mt19937 random(11);
+    Session session(scene_);
+    session.stroke(random);
+    Replica other = session.replica();
+    const auto applyToBoth = [&](sand::Step step) {
+        step.number = other.stepNumber() + 1;
+        other.apply(step);
+        session.apply(step);
+        ASSERT_EQ(other.encodeState(), session.replica().encodeState());
+    };
+    for (int i = 0; i < 30; ++i) {
+        sand::Step step = samples::randomStep(0, scene_.rules, random);
+        step.sweeps = 0;
+        step.edit = i % 7 == 3   ? Edit(Edit::settle)
+                    : i % 7 == 5 ? Edit(Edit::reset)
+                    : i % 7 == 6 ? Edit(Edit::undo)
+                                 : Edit();
+        ASSERT_NO_FATAL_FAILURE(applyToBoth(step)) << i;
+    }
+}
+
+}  // namespace
