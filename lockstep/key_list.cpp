@@ -33,6 +33,8 @@ constexpr std::array kTurn{plain(','), plain('.')};
 constexpr std::array kScene{plain('0')};
 constexpr std::array kHumidity{plain('w'), plain('d')};
 constexpr std::array kUndo{control('z'), plain('u')};
+constexpr std::array kRedo{control('y'),
+                           Keystroke{'z', static_cast<std::uint8_t>(Keystroke::kControl | Keystroke::kShift), 0}};
 constexpr std::array kReset{shift('r')};
 constexpr std::array kFrame{named(Keystroke::kHome), plain('v')};
 constexpr std::array kPause{plain(' ')};
@@ -45,14 +47,15 @@ constexpr std::array kHelp{named(Keystroke::kF1), plain('?'), plain('h')};
 constexpr std::array kLeave{named(Keystroke::kEscape)};
 constexpr std::array kQuit{base::kCloseKey};
 
-constexpr std::array<KeyEntry, 21> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
+constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
                                           {KeyAction::larger, kLarger, "larger tool", true},
                                           {KeyAction::smaller, kSmaller, "smaller tool", true},
                                           {KeyAction::turn, kTurn, "turns the tool", true},
                                           {KeyAction::sceneTool, kScene, "tool of the scene"},
                                           {KeyAction::humidity, kHumidity, "wetter, drier sand", true},
-                                          {KeyAction::undo, kUndo, "undoes the last stroke"},
-                                          {KeyAction::reset, kReset, "resets, without undo"},
+                                          {KeyAction::undo, kUndo, "undoes"},
+                                          {KeyAction::redo, kRedo, "redoes"},
+                                          {KeyAction::reset, kReset, "resets the sand"},
                                           {KeyAction::frameView, kFrame, "frames the terrain"},
                                           {KeyAction::pause, kPause, "pauses or resumes"},
                                           {KeyAction::save, kSave, "saves the sand"},

@@ -21,6 +21,7 @@ enum class KeyAction : std::uint8_t {
     sceneTool,  // tool and humidity as the scene has them, and the usual depth
     humidity,   // makes the sand wetter, or by its second key drier
     undo,
+    redo,
     reset,
     frameView,
     pause,

@@ -69,6 +69,9 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
                [this](const journal::JournalChecked& checked) { record_.checked(checked); }},
               sand_.allTiles(),
               record_.before().firstDifference}) {
+    if (!options_.recording) {
+        sand_.keepHistory(options_.record.resumed ? options_.record.resumed->material : scene.material);
+    }
     if (options_.record.resumed && options_.record.resumed->outvoted) {
         check_.reportResumed(*options_.record.resumed->outvoted);
     }

@@ -29,6 +29,8 @@ Incidents Session::incidents() const {
 
 nlohmann::json Session::status() const {
     const sand::Replica& sand = sand_.replica();
+    const scene::UndoHistory* const history = sand_.history();
+    const std::size_t undos = history != nullptr ? history->entries().undosLeft() : 0;
     nlohmann::json status{{"frame", frame_},
                           {"step", sand.stepNumber()},
                           {"ranks", wall_.ranks()},
@@ -41,7 +43,9 @@ nlohmann::json Session::status() const {
                           {"state_hash", fmt::format("{:016x}", sand_.hash())},
                           {"checking_journal", check_.pending()},
                           {"edits", sand_.edits()},
-                          {"can_undo", sand.canUndo()},
+                          {"can_undo", undos > 0},
+                          {"undo_left", undos},
+                          {"redo_left", history != nullptr ? history->entries().redosLeft() : 0},
                           {"sweeps_owed", sweepsOwed()},
                           {"settling", sand.settling()},
                           {"resting", steps_->rests()}};

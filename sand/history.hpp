@@ -14,10 +14,10 @@ namespace sand {
 
 /// Strokes and edits of one replica that can be undone, and redone.
 ///
-/// Each stroke, settle, reset, load and change of the material is an entry. The history has the sand before it, as
-/// records of what has changed since (SurfaceRecord). It is no part of the replica's state: it changes no sand, and
-/// other replicas need none. The newest stroke is undone by Edit::undo, if the replica still keeps its sand. All other
-/// changes are made by a load of the sand that beginReturn() returns. A new entry ends all redos. Not thread-safe.
+/// Each stroke, settle, reset, load and change of the material is an entry. The history has the sand before each entry,
+/// as a SurfaceRecord. It leaves the state of the replica alone, so that other replicas need no history. The newest
+/// stroke is undone by Edit::undo, if the replica still keeps its sand. Any other undo, and every redo, is a load of
+/// the sand that beginReturn() returns. A new entry ends all redos. Not thread-safe.
 class History {
 public:
     static constexpr std::size_t kMost = 20;                             // entries
@@ -49,9 +49,9 @@ public:
     [[nodiscard]] std::uint64_t version() const { return version_; }
     [[nodiscard]] std::int64_t bytes() const;  // of all records
 
-    /// How an undo or redo is to be made.
+    /// The edit that makes an undo or a redo.
     struct Return {
-        Edit::Kind edit = Edit::undo;             // or Edit::load
+        Edit::Kind edit = Edit::undo;             // Edit::undo or Edit::load
         std::shared_ptr<const SurfaceCopy> sand;  // for a load; Replica::continueCopy() completes it
         Label label = 0;                          // of the material then
         Intent intent;                            // of the load, and of a change of the material before it
@@ -62,7 +62,7 @@ public:
 
 private:
     struct Undo {
-        std::shared_ptr<SurfaceRecord> before;  // what has changed since then
+        std::shared_ptr<SurfaceRecord> before;  // of the moment before the entry
         Label label = 0;                        // before
     };
     struct Redo {
@@ -85,7 +85,7 @@ private:
     Label label_ = 0, returnedLabel_ = 0;      // of the present material, and of that after the newest entry
     std::uint64_t version_ = 0;
     bool keepsNewest_ = false;  // the replica keeps the sand before the newest entry, which is a stroke
-    bool loneStroke_;           // the replica keeps the sand before a stroke that is no entry
+    bool loneStroke_;           // the replica keeps the sand before a stroke that is older than the history
     bool inStroke_;             // the stroke of the engaged tool is an entry
     bool moves_ = false;        // the present step is an undo or redo of an entry
 };

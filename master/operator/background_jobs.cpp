@@ -35,6 +35,7 @@ std::vector<BackgroundJobs::Done> BackgroundJobs::finished(bool wait) {
         }
         Done& ended = done.emplace_back();
         ended.askers = std::move(job.askers);
+        ended.kind = job.kind;
         try {
             ended.result = job.work.get();
         } catch (const std::exception& error) {  // frames continue after every error of a job

@@ -24,13 +24,14 @@ public:
         sand::Edit edit;
         std::string words{};
     };
+    enum class Kind { file, capture, undo };
     /// A job that has ended. `error` is empty if it succeeded.
     struct Done {
         Askers askers;
         Result result;
         std::string error;
+        Kind kind = Kind::file;
     };
-    enum class Kind { file, capture };
 
     /// Throws base::InputError if kMost jobs are running.
     void requireRoom() const;

@@ -51,6 +51,8 @@ std::vector<std::string> commandsOf(const lockstep::KeyFound& key, const KeyStat
             return {humidityOf(moistened(state.material.humidity, key.index == 0 ? kMoreHumidity : -kMoreHumidity))};
         case KeyAction::undo:
             return {"undo"};
+        case KeyAction::redo:
+            return {"redo"};
         case KeyAction::reset:
             return {"reset"};
         case KeyAction::frameView:
@@ -118,8 +120,6 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
             return edited("tool and humidity of the scene, usual depth");
         case KeyAction::humidity:
             return edited(fmt::format("humidity {:.0f} %", 100 * after.material.humidity));
-        case KeyAction::undo:
-            return edited("undone");
         case KeyAction::reset:
             return edited("reset");
         case KeyAction::frameView:
@@ -136,6 +136,8 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
             return layer(Overlay::statistics);
         case KeyAction::pattern:
             return fmt::format("test pattern: {}", lockstep::patternName(after.pattern));
+        case KeyAction::undo:
+        case KeyAction::redo:  // answered when the wall shows it
         case KeyAction::save:
         case KeyAction::capture:  // answered when the files are written
         case KeyAction::help:

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "base/input_error.hpp"
@@ -41,6 +42,11 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       session_(std::move(session)),
       views_(wall, scene, options.tracker),
       input_(options.readInput),
+      undo_({session_.sand, jobs_, place_.mostBytes,
+             [this](sand::Edit edit, const scene::UndoHistory::Return& wanted, const Asker& asker) {
+                 return addReturn(std::move(edit), wanted, asker);
+             },
+             [this](const std::string& why, const Askers& askers) { refuse(why, askers); }}),
       captures_(out_),
       force_(options.force),
       film_(options.film),
@@ -76,6 +82,7 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
         }
     }
     finishJobs(false);
+    undo_.proceed();
     for (std::size_t rank = 0; rank < arrivals.size(); ++rank) {
         if (arrivals[rank].key.code != 0) {
             windows_.obey(arrivals[rank].key, static_cast<int>(rank), host::monotonicNs());
@@ -114,7 +121,10 @@ void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optio
     if (edit.kind == sand::Edit::undo && !session_.sand.replica().canUndo()) {
         throw base::InputError("nothing to undo");
     }
-    session_.edits.requireRoomFor(edit);
+    addEdit(std::move(edit), asker, material, {});
+}
+
+void OperatorDesk::requireRoomOnDisk(const sand::Edit& edit) {
     // Refuses at once. Otherwise the client would wait until the disk has room, and the edit would come late.
     if (!session_.room(session_.edits.sandBytes(edit))) {
         if (session_.room(session_.edits.sandBytes())) {
@@ -128,12 +138,65 @@ void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optio
             "the disk has no room for the journal, so the sand is stopped; the edit was refused: free disk space and "
             "try again");
     }
+}
+
+std::uint64_t OperatorDesk::addEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material,
+                                    const sand::History::Intent& intent) {
+    session_.edits.requireRoomFor(edit);
+    requireRoomOnDisk(edit);
     std::optional<Client> client = asker.client;
     if (paused_ && client) {
         control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
         client.reset();
     }
-    session_.edits.add(std::move(edit), client, material);
+    return session_.edits.add(std::move(edit), client, material, intent);
+}
+
+void OperatorDesk::askReturn(sand::History::Move move, const Asker& asker) {
+    if (!paused_) {
+        undo_.ask({move, asker});
+        return;
+    }
+    undo_.ask({move, {}});  // answered now, because a paused session would let the client wait
+    if (asker.client) {
+        control_->answer(*asker.client, line({{"ok", true}, {"waits_for", "resume"}}));
+    } else if (asker.window) {
+        windows_.answer(*asker.window, fmt::format("{} waits until Space resumes", nameOf(move)));
+    }
+}
+
+/// Another material than the present one is another edit, before the one that restores its sand.
+std::uint64_t OperatorDesk::addReturn(sand::Edit edit, const scene::UndoHistory::Return& wanted, const Asker& asker) {
+    const scene::Material material = scene::withToolOf(wanted.material, material_);
+    if (material != material_) {
+        if (const auto fault = scene::faultOf(material, grid_)) {
+            throw base::InputError(
+                fmt::format("the material of that moment does not fit the tool: {}", fault->message));
+        }
+        session_.edits.requireRoomFor(edit);
+        requireRoomOnDisk(edit);
+        addEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), {}, material, wanted.how.intent);
+        material_ = material;
+        views_.setHumidity(material_.humidity);
+    }
+    return addEdit(std::move(edit), asker, std::nullopt, wanted.how.intent);
+}
+
+void OperatorDesk::answerReturn(const UndoDesk::Asked& asked, const ArrivedStep& shown) {
+    const std::size_t undos = undo_.entries().undosLeft(), redos = undo_.entries().redosLeft();
+    const bool undoes = asked.move == sand::History::Move::undo;
+    const std::string nothing = fmt::format("nothing to {}", nameOf(asked.move));
+    if (!undo_.changedAnything()) {
+        refuse(nothing, {{shown.client, asked.asker.window}});
+    } else if (shown.client) {
+        control_->answer(*shown.client,
+                         line({{"ok", true}, {"step", shown.step.number}, {"undo_left", undos}, {"redo_left", redos}}));
+    } else if (asked.asker.window) {
+        const std::size_t left = undoes ? undos : redos;
+        windows_.answer(*asked.asker.window,
+                        fmt::format("{}; {} more to {}", undoes ? "undone" : "redone",
+                                    left == 0 ? "nothing" : std::to_string(left), nameOf(asked.move)));
+    }
 }
 
 /// Changes the material only if the edit was accepted. Later changes start from this material.
@@ -226,7 +289,9 @@ void OperatorDesk::load(const std::string& name, const Asker& asker) {
 void OperatorDesk::finishJobs(bool wait) {
     for (BackgroundJobs::Done& done : jobs_.finished(wait)) {
         try {
-            if (!done.error.empty()) {
+            if (done.kind == BackgroundJobs::Kind::undo) {
+                undo_.take(std::move(done));
+            } else if (!done.error.empty()) {
                 refuse(done.error, done.askers);
             } else if (done.result.edit.any()) {
                 askEdit(std::move(done.result.edit), done.askers.front());
@@ -262,6 +327,10 @@ void OperatorDesk::answer(const ArrivedSteps& steps) {
     answerIfEnded();  // one of an earlier frame
     for (const ArrivedStep& timed : steps) {
         const std::uint64_t step = timed.step.number;
+        if (const std::optional<UndoDesk::Asked> ended = undo_.takeEnded(timed.step.edit.number)) {
+            answerReturn(*ended, timed);
+            continue;
+        }
         if (!timed.client) {
             continue;
         }

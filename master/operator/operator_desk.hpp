@@ -15,6 +15,7 @@
 #include "master/operator/background_jobs.hpp"
 #include "master/operator/captures.hpp"
 #include "master/operator/operator_input.hpp"
+#include "master/operator/undo_desk.hpp"
 #include "master/operator/verb_arguments.hpp"
 #include "master/operator/view_source.hpp"
 #include "master/operator/window_desk.hpp"
@@ -43,7 +44,7 @@ class OperatorDesk {
 public:
     /// The parts of a session that the desk uses.
     struct SessionParts {
-        const MasterSand& sand;
+        MasterSand& sand;
         Edits& edits;
         ForceControl* force;                     // null for a replay, whose only command is stop
         std::function<bool(std::int64_t)> room;  // whether the disk has room for so many bytes of loaded sand
@@ -88,6 +89,8 @@ public:
     void pause(bool paused);
     /// Asks for an edit, after which the session has `material`.
     void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
+    /// Undoes the newest stroke or edit, or redoes the one that was undone last.
+    void askReturn(sand::History::Move move, const Asker& asker);
     void showPattern(std::optional<lockstep::Pattern> pattern);  // nullopt: the next one
     void showLayer(lockstep::Overlay layer, bool shown) { views_.show(layer, shown); }
     void separateEyes(double metres) { views_.separateEyes(metres); }
@@ -108,6 +111,12 @@ private:
     void answerSettle(std::optional<SettleEnd> end);
 
     void obeyLine(const std::string& line, const Asker& asker);
+    std::uint64_t addEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material,
+                          const sand::History::Intent& intent);
+    /// Throws base::InputError if the disk has no room for `edit`.
+    void requireRoomOnDisk(const sand::Edit& edit);
+    std::uint64_t addReturn(sand::Edit edit, const scene::UndoHistory::Return& wanted, const Asker& asker);
+    void answerReturn(const UndoDesk::Asked& asked, const ArrivedStep& shown);
     void askMaterial(const scene::Material& material, const Asker& asker);
     void showWall(walls::Stereo stereo, glm::ivec2 window, bool swapEyes);
     void finishJobs(bool wait);
@@ -126,6 +135,7 @@ private:
     OperatorInput input_;
     std::optional<ControlSocket> control_;  // nullopt for a replay
     BackgroundJobs jobs_;
+    UndoDesk undo_;
     Captures captures_;
     /// A settle that continues, and whose client waits for its end.
     struct Settling {

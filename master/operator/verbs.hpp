@@ -10,6 +10,7 @@
 
 #include "master/operator/asker.hpp"
 #include "master/operator/verb_arguments.hpp"
+#include "sand/history.hpp"
 #include "sand/model/step.hpp"
 
 namespace master {
@@ -46,7 +47,8 @@ constexpr auto verbsOf() {
         {"pause", "", atOnce, [](It it) { it.desk.pause(true); }},
         {"resume", "", atOnce, [](It it) { it.desk.pause(false); }},
         {"reset", "", byDesk, [](It it) { it.desk.askEdit(Edit::Kind::reset, it.asker); }},
-        {"undo", "", byDesk, [](It it) { it.desk.askEdit(Edit::Kind::undo, it.asker); }},
+        {"undo", "", byDesk, [](It it) { it.desk.askReturn(sand::History::Move::undo, it.asker); }},
+        {"redo", "", byDesk, [](It it) { it.desk.askReturn(sand::History::Move::redo, it.asker); }},
         {"settle", "", byDesk, [](It it) { it.desk.askEdit(Edit::Kind::settle, it.asker); }},
         {"pattern", "NAME|none|next", atOnce, [](It it) { it.desk.showPattern(readPattern(it.argument)); }},
         {"show", "LAYER", atOnce, [](It it) { it.desk.showLayer(readLayer(it.argument), true); }},

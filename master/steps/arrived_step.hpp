@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "sand/history.hpp"
 #include "sand/model/step.hpp"
 #include "scene/model/material.hpp"
 
@@ -21,6 +22,7 @@ struct ArrivedStep {
     std::int64_t handNs = 0;
     std::optional<std::uint64_t> client{};      // that waits for the answer to the step's edit
     std::optional<scene::Material> material{};  // of the session after the step's edit; nullopt if unchanged
+    sand::History::Intent intent{};             // of the step's edit
 
     /// Returns up to when the step has the movement of the hand [ns, the clock of the epoch]; 0 if it has none.
     [[nodiscard]] std::int64_t readNs() const { return handNs != 0 ? handNs : serverTimeNs; }

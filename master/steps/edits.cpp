@@ -25,9 +25,11 @@ void Edits::requireRoomFor(const sand::Edit& edit) const {
     }
 }
 
-void Edits::add(sand::Edit edit, std::optional<Client> client, std::optional<scene::Material> material) {
+std::uint64_t Edits::add(sand::Edit edit, std::optional<Client> client, std::optional<scene::Material> material,
+                         const sand::History::Intent& intent) {
     edit.number = ++last_;
-    waiting_.push_back({std::move(edit), client, std::move(material)});
+    waiting_.push_back({std::move(edit), client, std::move(material), intent});
+    return last_;
 }
 
 std::int64_t Edits::sandBytes(const sand::Edit& more) const {
@@ -66,6 +68,7 @@ void Edits::moveInto(ArrivedSteps& steps) {
         if (asked != waiting_.end()) {
             arrived.client = asked->client;
             arrived.material = std::move(asked->material);
+            arrived.intent = asked->intent;
             waiting_.erase(asked);
         }
     }

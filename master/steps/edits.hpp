@@ -21,6 +21,7 @@ public:
         sand::Edit edit;
         std::optional<Client> client;             // that gets the answer; nullopt for standard input and keys
         std::optional<scene::Material> material;  // the session's material after the edit; nullopt if unchanged
+        sand::History::Intent intent{};           // whether the edit undoes or redoes others
         std::uint32_t epoch = 0;                  // in which a server was asked for the edit; 0: none was
     };
 
@@ -30,8 +31,9 @@ public:
     /// Throws base::InputError if too many edits wait. Also throws if `edit` is a load and another load waits, because
     /// each load holds the whole sand.
     void requireRoomFor(const sand::Edit& edit) const;
-    /// Adds an edit under the next number.
-    void add(sand::Edit edit, std::optional<Client> client, std::optional<scene::Material> material);
+    /// Adds an edit under the next number, and returns this number.
+    std::uint64_t add(sand::Edit edit, std::optional<Client> client, std::optional<scene::Material> material,
+                      const sand::History::Intent& intent = {});
     [[nodiscard]] const std::deque<Asked>& waiting() const { return waiting_; }
     /// Returns the size of the sand that the waiting edits and `more` load [byte].
     [[nodiscard]] std::int64_t sandBytes(const sand::Edit& more = {}) const;
@@ -44,7 +46,8 @@ public:
     /// at a time, because it keeps only one for its next step. If a link was lost with an edit, the next server is
     /// asked for it again.
     [[nodiscard]] const sand::Edit* nextToAsk(std::uint32_t epoch);
-    /// Removes the edits in `steps`, whose clients and materials these steps get. Finds edits by their numbers.
+    /// Removes the edits in `steps`, whose clients, materials and intents these steps get. Finds edits by their
+    /// numbers.
     void moveInto(ArrivedSteps& steps);
 
 private:

@@ -30,7 +30,13 @@ void MasterSand::apply(std::uint64_t frame, const ArrivedSteps& steps, std::uint
     endedSettles_.clear();
     for (const ArrivedStep& timed : steps) {
         const bool begins = replica_.settlesBySweeps(timed.step);
+        if (history_) {
+            history_->begin(replica_, timed.step, timed.intent, timed.material);
+        }
         time_ += lockstep::applyTimed(replica_, timed.step);
+        if (history_) {
+            history_->end(replica_);
+        }
         noteSettle(timed.step, begins);
         work_ += replica_.lastWork();
         if (!replica_.leftOut().empty()) {

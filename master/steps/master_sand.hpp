@@ -13,6 +13,7 @@
 #include "lockstep/sand_time.hpp"
 #include "master/steps/step_source.hpp"
 #include "sand/replica.hpp"
+#include "scene/model/undo_history.hpp"
 
 namespace master {
 
@@ -55,6 +56,13 @@ public:
     [[nodiscard]] std::uint64_t hash() const { return hash_; }
     void rehash() { hash_ = replica_.stateHash(); }
 
+    /// Begins a history of the steps from now on, so that operators can undo and redo them. `material` is the present
+    /// one.
+    void keepHistory(const scene::Material& material) { history_.emplace(replica_, material); }
+    /// Return the history, or null without keepHistory().
+    [[nodiscard]] scene::UndoHistory* history() { return history_ ? &*history_ : nullptr; }
+    [[nodiscard]] const scene::UndoHistory* history() const { return history_ ? &*history_ : nullptr; }
+
     /// Injects the master's faults of frame `frame`, applies `steps`, and hashes `auditTiles` hash tiles again from
     /// memory. Calls `source`.reached() before the first step and after each step.
     void apply(std::uint64_t frame, const ArrivedSteps& steps, std::uint32_t auditTiles, StepSource& source);
@@ -91,6 +99,7 @@ private:
     void noteSettle(const sand::Step& step, bool begins);
 
     sand::Replica replica_;
+    std::optional<scene::UndoHistory> history_;
     const lockstep::FaultsOfRank faults_;
     std::uint64_t hash_ = 0;
     std::uint64_t edits_ = 0, stepsUnplaced_ = 0, firstStepUnplaced_ = 0;

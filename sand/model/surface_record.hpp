@@ -25,7 +25,7 @@ using SurfaceRecords = std::vector<std::shared_ptr<SurfaceRecord>>;
 
 class SurfaceCopy;
 
-/// Makes and follows records of a surface. They are no part of the sand, and change none. Surface is derived from it.
+/// Makes and follows records of a surface. They leave the sand alone. Surface is derived from it.
 /// All records that these functions take must come from this surface.
 class SurfaceRecorder {
 public:

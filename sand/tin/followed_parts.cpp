@@ -18,7 +18,7 @@ bool isSame(const Was& a, const Was& b) {
     return gone || (a.place == b.place && a.volume == b.volume && a.moving == b.moving);
 }
 
-/// Merges two ascending lists. Of equal elements, takes that of `first`.
+/// Merges two ascending lists. Takes the element of `first` if both have one.
 template <class Element, class Before>
 std::vector<Element> merged(const std::vector<Element>& first, const std::vector<Element>& more, Before before) {
     std::vector<Element> all;

@@ -37,8 +37,8 @@ struct EarlierParts {
     [[nodiscard]] std::int64_t bytes() const;  // of memory
 };
 
-/// Copy of the parts of a VertexSand that is brought up to date from time to time, at a cost that grows only with what
-/// has changed. Not thread-safe.
+/// Copy of the parts of a VertexSand. It is brought up to date from time to time. The cost grows with the number of
+/// changed parts alone. Not thread-safe.
 class FollowedParts {
 public:
     explicit FollowedParts(const VertexSand& layer) { replaced(layer); }

@@ -13,7 +13,8 @@
 /// Memory that each process of a session takes. This is the only place that states it.
 ///
 /// The figures are for sand as rough as can be, whose heights cannot be compressed. Smooth sand takes less. They leave
-/// out a `settle` of an operator (docs/limits.md), and a state that is sent to a rank or a server during the session.
+/// out a `settle` of an operator (docs/limits.md), a state that is sent to a rank or a server during the session, and
+/// the strokes and edits that a master can undo (sand::History), which are bounded.
 namespace scene {
 
 /// Stages of a process in which its memory differs.

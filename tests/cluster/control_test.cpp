@@ -26,7 +26,11 @@ protected:
         beginOn(wall(1, 2, stereo), device, journal);
     }
     void beginOn(const std::string& wallFile, const std::string& device, const std::string& journal = "required") {
-        session_ = start({"--wall", wallFile, "--scene", scene(), "--device", device, "--steps", "1000000", "--out",
+        beginOn(scene(), wallFile, device, journal);
+    }
+    void beginOn(const std::string& sceneFile, const std::string& wallFile, const std::string& device,
+                 const std::string& journal) {
+        session_ = start({"--wall", wallFile, "--scene", sceneFile, "--device", device, "--steps", "1000000", "--out",
                           out(), "--no-pictures", "--journal", journal});
         expectFrames(*session_);
         if (device != "none") {
@@ -95,7 +99,7 @@ protected:
 };
 
 /// Returns the step to whose sand the undo at step `undo` returns. It is the step before the last stroke, or the last
-/// reset or load within that stroke.
+/// reset, load or undo within that stroke.
 std::uint64_t keptBefore(const journal::Journal& journal, std::uint64_t undo) {
     std::uint64_t kept = 0;
     bool engaged = false;
@@ -104,7 +108,8 @@ std::uint64_t keptBefore(const journal::Journal& journal, std::uint64_t undo) {
             if (step.number <= undo && step.engaged && !engaged) {
                 kept = step.number - 1;
             } else if (step.number < undo && step.engaged &&
-                       (step.edit.kind == sand::Edit::reset || step.edit.kind == sand::Edit::load)) {
+                       (step.edit.kind == sand::Edit::reset || step.edit.kind == sand::Edit::load ||
+                        step.edit.kind == sand::Edit::undo)) {
                 kept = step.number;
             }
             engaged = step.engaged;
@@ -146,8 +151,9 @@ TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameH
     EXPECT_EQ(awaitStatus(canUndo)["ranks"], 12);
     const double radius = ask("status")["tool_radius"].get<double>() * 64;  // [cell] of a field 2 wide with 128 columns
     const auto cellsAtTool = static_cast<int>(16 * radius * radius);
-    ask("undo");
-    awaitStatus(canUndo);  // in or after a later stroke, so that the second undo returns to dug sand
+    const std::size_t left = ask("undo")["undo_left"];
+    // In or after a later stroke, so that the second undo returns to dug sand.
+    awaitStatus([left](const nlohmann::json& now) { return now["undo_left"] > left; });
     EXPECT_EQ(ask("save dug-1")["file"], "saves/dug-1.sand");
     const std::uint64_t undone = ask("undo")["step"];
     ask("tool footprint radius=0.08 heading=60");
@@ -181,6 +187,40 @@ TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameH
         folder_ / "film.txt");
     EXPECT_EQ(film.wait(300), 0) << film.output();
     EXPECT_EQ(json("film/summary.json")["state_hash"], summary()["state_hash"]);
+}
+
+TEST_F(Operator, UndoesAndRedoesOnAllRanksAndAReplayEndsInTheSameHash) {
+    beginOn(write("dunes.toml",
+                  "[field]\ncolumns = 128\nrows = 96\nwidth = 2.0\n[terrain]\nkind = \"dunes\"\nheight = 0.3\n"
+                  "dune_height = 0.2\ndune_length = 0.8\n[material]\ntalus_deg = 34\n[tool]\nradius = 0.04\n"),
+            wall(1, 2, "passive"), "none", "required");
+    std::vector<std::uint64_t> stops, undone, redone;  // steps; the sand of the stops is that before each command
+    for (const char* command : {"material talus 12", "settle", "reset"}) {
+        stops.push_back(ask(command)["step"].get<std::uint64_t>() - 1);
+    }
+    for (int left = 2; left >= 0; --left) {
+        const nlohmann::json answered = ask("undo");
+        undone.push_back(answered["step"]);
+        EXPECT_EQ(answered["undo_left"], left);
+        EXPECT_EQ(answered["redo_left"], 3 - left);
+    }
+    EXPECT_EQ(ask("status")["material"]["talus"], 34);
+    EXPECT_EQ(ask("status")["can_undo"], false);
+    expectRefusal("undo", "nothing to undo");
+    stops.push_back(undone.front() - 1);
+    for (int left = 2; left >= 0; --left) {
+        const nlohmann::json answered = ask("redo");
+        redone.push_back(answered["step"]);
+        EXPECT_EQ(answered["redo_left"], left);
+    }
+    EXPECT_EQ(ask("status")["material"]["talus"], 12);
+    expectRefusal("redo", "nothing to redo");
+    endAndReplay(3 + 4 + 4);  // a change of the material is undone by two edits
+    for (std::size_t i = 0; i < undone.size(); ++i) {
+        EXPECT_EQ(heightsAfter(undone[i]), heightsAfter(stops[2 - i])) << "undo " << i;
+        EXPECT_EQ(heightsAfter(redone[i]), heightsAfter(stops[i + 1])) << "redo " << i;
+    }
+    EXPECT_NE(heightsAfter(undone.back()), heightsAfter(undone[1])) << "the talus has moved sand";
 }
 
 TEST_F(Operator, ChangesWhatIsShownAndTakesPictures) {
@@ -321,6 +361,7 @@ TEST_F(Operator, IsToldWhatCannotBeDoneAndTheSessionGoesOn) {
     for (const auto& [words, named] : {std::pair{"", "''"},
                                        {"undo", ""},
                                        {"undo twice", "'twice'"},
+                                       {"redo", "redo"},
                                        {"pattern stripes", "'stripes'"},
                                        {"eye-separation -0.1", "'-0.1'"},
                                        {"eye-separation nan", "'nan'"},

@@ -21,7 +21,8 @@ using sand::History;
 using sand::Replica;
 using Move = History::Move;
 
-/// Sand at one moment: its bytes, with fluxes or with what moves, the hashes of its hash tiles, and the material.
+/// Bytes of the sand at one moment, the hashes of its hash tiles, and the material. The bytes have the fluxes of a
+/// grid.
 struct Stop {
     base::Bytes sand;
     std::vector<std::uint64_t> hashes;
@@ -281,7 +282,7 @@ TEST_P(HistoryOf, ANewEntryEndsAllRedos) {
     ASSERT_TRUE(session.move(Move::undo, random));
     ASSERT_EQ(session.history().redosLeft(), 1U);
     session.otherTool(3 * sand::kProbePerCell);
-    EXPECT_EQ(session.history().redosLeft(), 1U) << "a change of the tool is no entry";
+    EXPECT_EQ(session.history().redosLeft(), 1U) << "a change of the tool ends no redo";
     session.edit(Edit::settle);
     EXPECT_EQ(session.history().redosLeft(), 0U);
     EXPECT_FALSE(session.move(Move::redo, random));

@@ -18,6 +18,10 @@ struct NotingDesk {
         did = "edit";
         edit = asked.kind;
     }
+    void askReturn(sand::History::Move move, const Asker& /* asker */) {
+        did = move == sand::History::Move::redo ? "redo" : "edit";  // an undo begins as the edit
+        edit = sand::Edit::undo;
+    }
     void showPattern(std::optional<lockstep::Pattern> shown) {
         did = "pattern";
         pattern = shown;

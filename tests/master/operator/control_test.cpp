@@ -49,6 +49,7 @@ TEST(OperatorCommand, EveryVerbAsksTheDeskForItsDeed) {
     }
     EXPECT_EQ(deedOf("reset").edit, sand::Edit::reset);
     EXPECT_EQ(deedOf("undo").edit, sand::Edit::undo);
+    EXPECT_EQ(deedOf("redo").did, "redo");
     EXPECT_EQ(deedOf("settle").edit, sand::Edit::settle);
     EXPECT_EQ(deedOf("pattern ramp").pattern, lockstep::Pattern::ramp);
     EXPECT_EQ(noted("pattern none").pattern, lockstep::Pattern::none);
@@ -94,7 +95,7 @@ TEST(OperatorCommand, EveryEditWithoutDataIsTheVerbOfItsName) {
 
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("dance"),
-              "'dance' is not a command; the commands are: status, pause, resume, reset, undo, settle, pattern "
+              "'dance' is not a command; the commands are: status, pause, resume, reset, undo, redo, settle, pattern "
               "NAME|none|next, "
               "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, swap-eyes on|off, tool [SHAPE] [radius=R] "
               "[width=W] "

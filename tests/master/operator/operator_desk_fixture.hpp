@@ -38,7 +38,7 @@ public:
 class OperatorDeskTest : public FolderTest {
 protected:
     OperatorDeskTest() : OperatorDeskTest(samples::flatScene(32, 24)) {}
-    explicit OperatorDeskTest(scene::Scene scene) : scene_(std::move(scene)) {}
+    explicit OperatorDeskTest(scene::Scene scene) : scene_(std::move(scene)) { sand_.keepHistory(scene_.material); }
     void SetUp() override { open(&force_); }
     void open(master::ForceControl* force, const master::DeskOptions& options = {}) {
         desk_.reset();

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "tests/master/operator/operator_desk_fixture.hpp"
 
@@ -54,7 +57,7 @@ TEST_F(Desk, OfAResumedSessionCountsOnFromTheNumbersOfItsJournal) {
     EXPECT_EQ(edits()[0].number, 8U);
     show(edits()[0]);
     EXPECT_EQ(await(answer)["ok"], true);
-    EXPECT_EQ(ask("undo")["ok"], false);
+    EXPECT_EQ(ask("redo")["ok"], false);
     std::future<json> later = send("settle");
     obeyUntil([&] { return edits().size() == 2; });
     EXPECT_EQ(edits()[1].number, 9U) << "a refused edit takes no number";
@@ -103,6 +106,67 @@ TEST_F(Desk, RefusesWhatCannotBeDone) {
         EXPECT_FALSE(answer["error"].get<std::string>().empty()) << line;
     }
     EXPECT_TRUE(edits().empty());
+}
+
+// Several clients ask at once. Each undo starts from the sand of the one before.
+TEST_F(Desk, UndoesAndRedoesOneAfterTheOther) {
+    std::vector<base::Bytes> sand;
+    const auto showNext = [&](std::size_t count) {
+        obeyUntil([&] { return edits().size() == count; });
+        show(edits().back());
+    };
+    for (const char* line : {"material talus 30", "settle", "reset"}) {
+        sand.push_back(sand_.replica().copySand()->encode());
+        std::future<json> answer = send(line);
+        showNext(sand.size());
+        EXPECT_EQ(await(answer)["ok"], true) << line;
+    }
+    EXPECT_EQ(sand_.history()->entries().undosLeft(), 3U);
+    std::future<json> first = send("undo"), second = send("undo");
+    showNext(4);
+    EXPECT_EQ(edits()[3].kind, sand::Edit::load);
+    showNext(5);
+    std::vector<json> told{await(first), await(second)};
+    std::ranges::sort(told, std::greater(), [](const json& one) { return one["undo_left"].get<int>(); });
+    EXPECT_EQ(told[0], (json{{"ok", true}, {"step", 4}, {"undo_left", 2}, {"redo_left", 1}}));
+    EXPECT_EQ(told[1], (json{{"ok", true}, {"step", 5}, {"undo_left", 1}, {"redo_left", 2}}));
+    EXPECT_EQ(sand_.replica().copySand()->encode(), sand[1]);
+    EXPECT_EQ(ask("status")["material"]["talus"], 30);
+    std::future<json> third = send("undo");
+    obeyUntil([&] { return edits().size() == 7; });
+    EXPECT_EQ(edits()[5].kind, sand::Edit::tune) << "the talus of before";
+    show(edits()[5]);
+    show(edits()[6]);
+    std::future<json> redo = send("redo");
+    obeyUntil([&] { return edits().size() == 9; });
+    EXPECT_EQ(await(third)["undo_left"], 0);
+    EXPECT_EQ(ask("status")["material"]["talus"], 30) << "as it was asked for by the redo";
+    show(edits()[7]);
+    show(edits()[8]);
+    EXPECT_EQ(await(redo)["redo_left"], 2);
+}
+
+TEST_F(Desk, AnswersWhenNothingIsLeftToUndoOrToRedo) {
+    EXPECT_EQ(ask("undo"), (json{{"ok", false}, {"error", "nothing to undo"}}));
+    EXPECT_EQ(ask("redo"), (json{{"ok", false}, {"error", "nothing to redo"}}));
+    EXPECT_TRUE(edits().empty());
+}
+
+TEST_F(Desk, RefusesAnUndoForWhoseSandTheDiskHasNoRoom) {
+    std::future<json> answer = send("settle");
+    obeyUntil([&] { return edits().size() == 1; });
+    show(edits()[0]);
+    EXPECT_EQ(await(answer)["ok"], true);
+    most_ = 8;  // no sand is so small
+    const json refused = ask("undo");
+    EXPECT_EQ(refused["ok"], false);
+    EXPECT_EQ(edits().size(), 1U);
+    EXPECT_EQ(sand_.history()->entries().undosLeft(), 1U) << "it is possible later";
+    most_ = 1 << 30;
+    std::future<json> again = send("undo");
+    obeyUntil([&] { return edits().size() == 2; });
+    show(edits()[1]);
+    EXPECT_EQ(await(again)["undo_left"], 0);
 }
 
 TEST_F(Desk, RemembersTheMaterialThatWasAskedFor) {
