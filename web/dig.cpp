@@ -117,10 +117,14 @@ API int sw_dig_on() {
 /// Returns 1 if the next step is a settle that blocks this thread.
 API int sw_settles_next() { return digs.dug->settlesNext() ? 1 : 0; }
 
-/// Asks for an edit by its name.
+/// Asks for an edit by its name, or for a redo.
 API int sw_ask(const char* edit) {
     return digs.guarded([=] {
-        digs.dug->ask(web::editNamed(edit));
+        if (std::string_view(edit) == web::kRedo) {
+            digs.dug->redo();
+        } else {
+            digs.dug->ask(web::editNamed(edit));
+        }
         return 0;
     });
 }
@@ -144,8 +148,8 @@ API const char* sw_words() { return digs.textAt(web::wordsOfPage()); }
 API const char* sw_material() { return digs.textAt(web::materialText(digs.dug->material())); }
 /// Returns the material of the scene, as JSON.
 API const char* sw_scene_material() { return digs.textAt(web::materialText(digs.dug->scene().material)); }
-/// Returns 1 if the last stroke can be undone.
-API int sw_can_undo() { return digs.dug->replica().surface().hasKept() ? 1 : 0; }
+/// Returns 1 if a stroke or an edit can be undone.
+API int sw_can_undo() { return digs.dug->canUndo() ? 1 : 0; }
 
 /// Encodes the journal of all steps. Returns its length [byte]; the bytes are at sw_state_bytes().
 API int sw_journal() {

@@ -80,6 +80,7 @@ std::string wordsOfPage() {
             words.edits.push_back(known.name);
         }
     }
+    words.edits.push_back(kRedo);
     return jsonOf(words);
 }
 

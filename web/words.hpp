@@ -23,5 +23,6 @@ namespace web {
 /// Returns the edit of that name. Throws base::InputError for another name, and for an edit that needs more than a
 /// name.
 [[nodiscard]] sand::Edit editNamed(std::string_view name);
+inline constexpr std::string_view kRedo = "redo";  // among the edits of wordsOfPage(), but no sand::Edit
 
 }  // namespace web

@@ -71,6 +71,15 @@ function digWithAll() {
     good(ask("undo"));
     rest(1);
     assert.deepEqual(heights(), last, "an undo restores the sand from before the stroke");
+    good(ask("redo"));
+    rest(1);
+    assert.notDeepEqual(heights(), last, "a redo brings the stroke back");
+    assert.match(refusal(() => ask("redo")), /nothing to redo/);
+    for (let i = 0; i < loaded.words.tools.length; ++i) {
+        good(ask("undo"));
+        rest(1);
+    }
+    assert.deepEqual(heights(), start, "undos restore the start");
     assert.match(refusal(() => ask("undo")), /nothing to undo/);
     good(setMaterial("humidity", 0.4));
     good(setMaterial("talus", 25));

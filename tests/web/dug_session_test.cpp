@@ -290,6 +290,47 @@ TEST_F(Dug, SaysWhenASettleComesNext) {
     EXPECT_FALSE(session_->settlesNext());
 }
 
+// The journal has the loads that undo and redo, and the material of before.
+TEST_F(Dug, UndoesAndRedoesStrokesAndEdits) {
+    std::vector<base::Bytes> stops;
+    const auto keep = [&] { stops.push_back(session_->replica().copySand()->encode()); };
+    const auto expectStop = [&](std::size_t stop) {
+        EXPECT_TRUE(session_->replica().copySand()->encode() == stops[stop]) << stop;
+    };
+    advance(2);
+    keep();
+    stroke(10);
+    advance(30);
+    keep();
+    session_->setNumber("talus", 20);
+    advance(3);
+    keep();
+    session_->ask(sand::Edit::reset);
+    advance(1);
+    for (std::size_t stop = 3; stop-- > 0;) {
+        ASSERT_TRUE(session_->canUndo());
+        session_->ask(sand::Edit::undo);
+        advance(stop == 1 ? 2 : 1);  // the material is an edit of its own
+        expectStop(stop);
+        EXPECT_EQ(session_->material().dryTalus, stop == 2 ? 20 : 34);
+    }
+    EXPECT_FALSE(session_->canUndo());
+    EXPECT_THROW(session_->ask(sand::Edit::undo), base::InputError);
+    session_->redo();
+    session_->redo();
+    advance(3);
+    expectStop(2);
+    EXPECT_EQ(session_->material().dryTalus, 20);
+    session_->ask(sand::Edit::settle);
+    session_->redo();  // the settle ends it
+    advance(3);
+    EXPECT_FALSE(session_->canRedo());
+    EXPECT_THROW(session_->redo(), base::InputError);
+    std::uint64_t hash = 0;
+    EXPECT_EQ(replayed(hash).differing, 0U);
+    EXPECT_EQ(hash, session_->replica().stateHash());
+}
+
 TEST_F(Dug, RefusesAnUndoWithoutAStroke) {
     EXPECT_THROW(session_->ask(sand::Edit::undo), base::InputError);
     point(20, 30, false);

@@ -17,7 +17,7 @@ TEST(PageWords, HaveEveryToolNumberAndEdit) {
         EXPECT_NE(words.find("{\"word\":" + web::quotedText(key.word) + ","), std::string::npos) << words;
     }
     EXPECT_NE(words.find(R"({"word":"talus","lowest":0,"highest":90})"), std::string::npos) << words;
-    EXPECT_NE(words.find(R"("edits":["settle","reset","undo"])"), std::string::npos) << words;
+    EXPECT_NE(words.find(R"("edits":["settle","reset","undo","redo"])"), std::string::npos) << words;
 }
 
 TEST(PageWords, TellTheMaterialAndThePartsOfItsTool) {

@@ -39,6 +39,7 @@ DugSession::DugSession(scene::Scene scene, std::uint64_t session, std::string_vi
       material_(scene_.material),
       shortcoming_(inOneLine(scene_.warnings)),
       replica_(scene_),
+      history_(replica_, material_, kMostHistoryBytes),
       hand_(scene_.rules.stepsPerSecond, replica_),
       budget_(haptic_bridge::Pace::fast, kSecond / scene_.rules.stepsPerSecond),
       journal_(scene_, session, "web page", release),
@@ -154,15 +155,55 @@ void DugSession::ask(const scene::Material& material) {
     material_ = material;
 }
 
-void DugSession::ask(sand::Edit edit, std::optional<scene::Material> material) {
-    if (edit.kind == sand::Edit::undo && !replica_.canUndo()) {
-        throw base::InputError("nothing to undo");
+void DugSession::ask(sand::Edit edit) {
+    if (edit.kind == sand::Edit::undo) {
+        askReturn(scene::UndoHistory::Move::undo);
+    } else {
+        ask(std::move(edit), std::nullopt);
     }
+}
+
+void DugSession::ask(sand::Edit edit, std::optional<scene::Material> material) {
+    requireRoom();
+    asked_.push_back({std::move(edit), material});
+}
+
+void DugSession::requireRoom() const {
     if (asked_.size() >= kMostEdits) {
         throw base::InputError(fmt::format("{} edits wait for their steps already", asked_.size()));
     }
-    edit.number = ++lastEdit_;
-    asked_.push_back({std::move(edit), material});
+}
+
+void DugSession::askReturn(scene::UndoHistory::Move move) {
+    const bool undoes = move == scene::UndoHistory::Move::undo;
+    if (asked_.empty() && !(undoes ? canUndo() : canRedo())) {
+        throw base::InputError(undoes ? "nothing to undo" : "nothing to redo");
+    }
+    requireRoom();
+    asked_.push_back({.returns = move});
+}
+
+void DugSession::beginReturn() {
+    while (!asked_.empty() && asked_.front().returns) {
+        const std::optional<scene::UndoHistory::Return> wanted =
+            history_.beginReturn(replica_, *asked_.front().returns);
+        asked_.pop_front();
+        if (!wanted) {
+            continue;  // an edit before it has ended what there was to redo
+        }
+        sand::Edit edit = wanted->how.edit;
+        if (wanted->how.sand != nullptr) {
+            while (!wanted->how.sand->complete() && replica_.continueCopy(std::int64_t{1} << 20)) {
+            }
+            edit = sand::Edit::loaded(wanted->how.sand->encode());
+        }
+        asked_.push_front({std::move(edit), std::nullopt, wanted->how.intent, std::nullopt});
+        if (const scene::Material material = scene::withToolOf(wanted->material, material_); material != material_) {
+            asked_.push_front(
+                {sand::Edit::tuned(scene::tuningOf(material, grid_)), material, wanted->how.intent, std::nullopt});
+            material_ = material;
+        }
+    }
 }
 
 void DugSession::takePointer() {
@@ -189,6 +230,7 @@ sand::Step DugSession::nextStep() {
     }
     if (!asked_.empty()) {
         step.edit = asked_.front().edit;
+        step.edit.number = ++lastEdit_;
     }
     step.sweeps = budget_.sweepsOf(step, replica_);
     return step;
@@ -209,14 +251,19 @@ void DugSession::write(const sand::Step& step) {
 }
 
 bool DugSession::advance() {
+    beginReturn();
     const sand::Step step = nextStep();
     write(step);
     count(step);
+    Asked asked;
     if (step.edit.any()) {
+        asked = std::move(asked_.front());
         asked_.pop_front();
     }
     const bool rested = replica_.settled(), engaged = replica_.engaged();
+    history_.begin(replica_, step, asked.intent, asked.material);
     replica_.apply(step);
+    history_.end(replica_);
     return !step.path.empty() || step.edit.any() || engaged != replica_.engaged() || !rested || !replica_.settled();
 }
 

@@ -14,6 +14,7 @@
 #include "haptic_bridge/hand/touched_sand.hpp"
 #include "journal/memory_writer.hpp"
 #include "journal/reader.hpp"
+#include "scene/model/undo_history.hpp"
 #include "web/replica/step_source.hpp"
 
 namespace web {
@@ -42,8 +43,12 @@ public:
     /// PointerHand's limits.
     void setDepth(double depth /* [tool radius] */);
     /// Asks for an undo, a reset or a settle. Throws base::InputError if there is nothing to undo, or if too many edits
-    /// wait.
-    void ask(sand::Edit edit) { ask(std::move(edit), std::nullopt); }
+    /// wait. An undo takes back the newest stroke or edit, as an operator's does (docs/operator.md).
+    void ask(sand::Edit edit);
+    /// Asks for a redo. Throws base::InputError as ask() does.
+    void redo() { askReturn(scene::UndoHistory::Move::redo); }
+    [[nodiscard]] bool canUndo() const { return history_.entries().undosLeft() > 0; }
+    [[nodiscard]] bool canRedo() const { return history_.entries().redosLeft() > 0; }
     /// Changes the material, or the tool, as an operator's command does. Throws base::InputError.
     void setNumber(std::string_view word, double value) { ask(scene::withNumber(material_, word, value, grid_)); }
     void setTool(const scene::ToolChange& change) { ask(scene::withTool(material_, change, grid_)); }
@@ -77,10 +82,18 @@ public:
     }
 
 private:
+    static constexpr std::int64_t kMostHistoryBytes = std::int64_t{64} << 20;  // a page has less memory than a wall
+
     struct Asked {
-        sand::Edit edit;
-        std::optional<scene::Material> material;  // after the edit; nullopt if unchanged
+        sand::Edit edit{};
+        std::optional<scene::Material> material{};          // after the edit; nullopt if unchanged
+        scene::UndoHistory::Intent intent{};                // of the edit
+        std::optional<scene::UndoHistory::Move> returns{};  // an undo or redo that has no edits yet
     };
+    void askReturn(scene::UndoHistory::Move move);
+    void requireRoom() const;
+    /// Replaces the undo or redo at the front by the edits that make it.
+    void beginReturn();
     void ask(const scene::Material& material);
     void ask(sand::Edit edit, std::optional<scene::Material> material);
     void takePointer();
@@ -104,6 +117,7 @@ private:
     scene::Material material_;
     std::string shortcoming_;
     sand::Replica replica_;
+    scene::UndoHistory history_;
     haptic_bridge::PointerHand hand_;
     haptic_bridge::TouchedSand touched_;
     haptic_bridge::SweepBudget budget_;

@@ -119,6 +119,7 @@ export class DigPage {
             case "wetter": return panel.moisten(1);
             case "drier": return panel.moisten(-1);
             case "undo": return page.tell({ edit: "undo" });
+            case "redo": return page.tell({ edit: "redo" });
             case "newSand": return this.again();
             case "save": return page.tell({ save: true });
             case "pause":

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of the page, with the names and effects of docs/pointer.md, and the help that shows them.
 
-export type KeyAction = "tool" | "larger" | "smaller" | "turnLeft" | "turnRight" | "sceneTool" | "wetter" | "drier" | "undo" | "newSand" | "frame"
+export type KeyAction = "tool" | "larger" | "smaller" | "turnLeft" | "turnRight" | "sceneTool" | "wetter" | "drier" | "undo" | "redo" | "newSand" | "frame"
     | "pause" | "save" | "picture" | "statistics" | "help" | "escape" | "onlyInAWindow";
 export interface KeyEntry {
     action: KeyAction;
@@ -19,7 +19,8 @@ export const kKeys: KeyEntry[] = [
     { action: "sceneTool", keys: ["0"], effect: "tool of the scene" },
     { action: "wetter", keys: ["W"], effect: "wetter sand", repeats: true },
     { action: "drier", keys: ["D"], effect: "drier sand", repeats: true },
-    { action: "undo", keys: ["Ctrl+Z", "U"], effect: "undoes the last stroke" },
+    { action: "undo", keys: ["Ctrl+Z", "U"], effect: "undoes a stroke or an edit" },
+    { action: "redo", keys: ["Ctrl+Y", "Ctrl+Shift+Z"], effect: "redoes it" },
     { action: "newSand", keys: ["Shift+R"], effect: "new sand; the sand before is kept" },
     { action: "frame", keys: ["Home", "V"], effect: "frames the terrain" },
     { action: "pause", keys: ["Space"], effect: "pauses or resumes" },
