@@ -148,6 +148,8 @@ TEST_F(Dug, ContinuesWithAKeptJournal) {
     EXPECT_EQ(kept->touched(), session_->touched());
     EXPECT_EQ(kept->material().humidity, 0.5);
     EXPECT_EQ(kept->material().toolKind, sand::ToolKind::ellipse);
+    EXPECT_TRUE(kept->canUndo()) << "the last stroke";
+    EXPECT_FALSE(kept->canRedo());
     session_ = std::move(kept);  // the same hand continues, and a native program replays all of it
     session_->ask(sand::Edit::undo);
     advance(2);

@@ -116,6 +116,7 @@ void DugSession::endReturn() {
                                   returning_->reader.place().journal, returning_->steps, returning_->from.step));
     }
     returning_.reset();
+    history_ = scene::UndoHistory(replica_, material_, kMostHistoryBytes);  // knows the last stroke alone
     hand_.begin(replica_);
 }
 
