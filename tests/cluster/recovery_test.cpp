@@ -143,7 +143,8 @@ TEST_F(Recovery, AProcessThatIsKilledDuringTheStartLeavesNothing) {
     const Ended ended =
         script("kill_starts.py", {"--side", "200", "--wall", wall(1, 2, "mono"), "--limit", "100", "--processes",
                                   "launcher", "master", "--signals", "KILL", "--moments", "rank"});
-    // The status is 1 if no try was made. On a busy machine, a try may come after the first frame, and is then left out.
+    // The status is 1 if no try was made. On a busy machine, a try may come after the first frame, and is then left
+    // out.
     EXPECT_EQ(ended.status, 0) << ended.output;
     EXPECT_NE(ended.output.find(" bad; "), std::string::npos) << ended.output;
 }
