@@ -205,7 +205,9 @@ TEST_F(LargeToolSession, GoesOnAfterItsHapticServerIsKilledWhileTheToolDigs) {
     expectHand(*session);
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > 10; });
     kill(*session, "sandwall-haptic-server");
-    ASSERT_FALSE(session->waitForEvent("link", {{"state", "linked"}, {"epoch", 3}}).is_null()) << session->output();
+    // Between the links, the master may have made steps in an epoch of its own.
+    const auto again = [](const nlohmann::json& event) { return event["state"] == "linked" && event["epoch"] > 1; };
+    ASSERT_FALSE(session->waitForEvent("link", again).is_null()) << session->output();
     const int linked = ask("status")["step"];
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > linked + 150; });
     expectOneSand(*session);

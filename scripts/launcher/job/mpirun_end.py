@@ -79,8 +79,11 @@ class EndWatch:
         return min(self.seconds, BRIEF_SECONDS) if self.brief() else self.seconds
 
     def brief(self):
-        """Returns whether all ranks run here, and no child was seen for long."""
-        return self.here and (self.seen_from is None or self.seen_to - self.seen_from < BRIEF_LIFE)
+        """Returns whether all ranks run here, and children were seen, but not for long.
+
+        Children that nobody has seen may be commands of a script that starts mpirun. They are no sign of a failed start.
+        """
+        return self.here and self.seen_from is not None and self.seen_to - self.seen_from < BRIEF_LIFE
 
     def look(self, now):
         known = self.child and process(self.child)

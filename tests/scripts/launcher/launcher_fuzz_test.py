@@ -234,7 +234,7 @@ def terrain(folder, text):
     path.write_bytes(text)
     with refused():
         kind = kinds.kind_of(path)
-        made_scene.text_of(kind, str(path), 0, 1)
+        made_scene.text_of(kind, str(path), 0)
     marks.files_of(text, folder.path)
 
 

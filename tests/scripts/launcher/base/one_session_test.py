@@ -31,7 +31,7 @@ exit 9
 class OneFolder(LauncherTest):
     def start_waiting(self):
         """Starts a session that runs until a line is written to its input."""
-        self.script("mpirun", "#!/bin/sh\ntouch \"$STARTED\"; read -r line\n")
+        self.script("mpirun", "#!/bin/sh\n: >\"$STARTED\"; read -r line\n")
         started = self.folder / "started"
         process = subprocess.Popen(self.command(["-"], "--journal", "off"), env={**self.environment, "STARTED": started},
                                    stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)

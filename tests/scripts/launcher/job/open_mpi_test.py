@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import zlib
 from unittest import mock
@@ -313,8 +314,12 @@ class Launcher(LauncherTest):
     def test_a_rank_tells_the_id_of_its_job(self):
         for text, job_id in (("801898497", "2fcc0001"), ("word", None), ("", None)):
             with subprocess.Popen(["sleep", "1000"], env={**os.environ, "OMPI_MCA_ess_base_jobid": text}) as rank:
-                self.assertEqual(open_mpi.job_id_of(rank.pid), job_id)
-                rank.kill()
+                try:
+                    while not pathlib.Path(f"/proc/{rank.pid}/environ").read_bytes():
+                        time.sleep(0.001)  # a program that has just begun has no environment yet
+                    self.assertEqual(open_mpi.job_id_of(rank.pid), job_id)
+                finally:
+                    rank.kill()
         self.assertIsNone(open_mpi.job_id_of(rank.pid))
 
 
