@@ -55,7 +55,7 @@ constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the
                                           {KeyAction::humidity, kHumidity, "wetter, drier sand", true},
                                           {KeyAction::undo, kUndo, "undoes"},
                                           {KeyAction::redo, kRedo, "redoes"},
-                                          {KeyAction::reset, kReset, "resets the sand"},
+                                          {KeyAction::reset, kReset, "new sand"},
                                           {KeyAction::frameView, kFrame, "frames the terrain"},
                                           {KeyAction::pause, kPause, "pauses or resumes"},
                                           {KeyAction::save, kSave, "saves the sand"},

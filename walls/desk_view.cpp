@@ -96,12 +96,13 @@ void DeskView::aimAt(glm::dvec3 aim) {
 
 void DeskView::pan(glm::dvec3 metres) { aimAt(orbit_.aim - glm::inverse(glm::dmat3(sceneToRoom())) * metres); }
 
-void DeskView::zoom(double notches, glm::dvec3 fixed) {
+bool DeskView::zoom(double notches, glm::dvec3 fixed) {
     const double before = orbit_.zoom;
     const glm::dvec3 fromAim = glm::inverse(glm::dmat3(sceneToRoom())) * (fixed - stage_.centre);
     orbit_.zoom =
         std::clamp(before * std::exp2(-notches / kNotchesToDouble), std::min(least_, before), std::max(most_, before));
     aimAt(orbit_.aim + fromAim * (1 - before / orbit_.zoom));
+    return notches == 0 || orbit_.zoom != before;
 }
 
 void DeskView::frame(const TerrainBox& box) {

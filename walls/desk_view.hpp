@@ -35,8 +35,8 @@ public:
     /// Moves the sand in the room [m]. The place at stage.centre stays within a field's length around the field.
     void pan(glm::dvec3 metres);
     /// Zooms by `notches` of the wheel; positive notches make the sand smaller. The point `fixed` of the room keeps its
-    /// sand, so that the sand under the pointer stays there.
-    void zoom(double notches, glm::dvec3 fixed /* [m] */);
+    /// sand, so that the sand under the pointer stays there. Returns false if a limit of the zoom was reached before.
+    bool zoom(double notches, glm::dvec3 fixed /* [m] */);
     /// Brings the sand back to where the wall file has it. If the screens then cut off a part of `box`, moves the sand
     /// and makes it smaller until they show the whole box.
     void frame(const TerrainBox& box);

@@ -13,7 +13,9 @@
 
 namespace master {
 
-inline constexpr const char* kFixedView = "this wall's view is fixed";            // answer to an attempt to move it
+inline constexpr const char* kFixedView = "this wall's view is fixed";  // answer to an attempt to move it
+inline constexpr const char* kNearest = "no nearer";                    // answers to a wheel at a limit of the zoom
+inline constexpr const char* kFarthest = "no farther; Home shows all";
 inline constexpr const char* kFixedSize = "this wall's windows keep their size";  // answer to F11 in one of them
 inline constexpr const char* kEndsByAnother = "Esc again within 3 s ends the session";
 inline constexpr std::int64_t kLeaveNs = 3'000'000'000;  // [ns], within which a second Escape ends the session

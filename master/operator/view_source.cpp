@@ -26,15 +26,16 @@ void ViewSource::place(const glm::dmat4& sceneToRoom) {
     std::copy_n(glm::value_ptr(sceneToRoom), state_.sceneToRoom.size(), state_.sceneToRoom.begin());
 }
 
-void ViewSource::move(const haptic_bridge::PointerReport& report) {
+bool ViewSource::move(const haptic_bridge::PointerReport& report) {
     if (!report.movesView()) {
-        return;
+        return true;
     }
     const auto vector = [](const std::array<float, 3>& from) { return glm::dvec3(from[0], from[1], from[2]); };
     desk_->turn(static_cast<double>(report.turnX), static_cast<double>(report.turnY));
     desk_->pan(vector(report.pan));
-    desk_->zoom(static_cast<double>(report.wheel), vector(report.wheelAt));
+    const bool zoomed = desk_->zoom(static_cast<double>(report.wheel), vector(report.wheelAt));
     place(desk_->sceneToRoom());
+    return zoomed;
 }
 
 void ViewSource::frame(const sand::HeightSpan& sand) {

@@ -39,8 +39,9 @@ public:
     void setHumidity(double humidity) { state_.humidity = humidity; }
     /// Returns whether people may move the view: the wall is a desktop, and no tracker moves the viewer.
     [[nodiscard]] bool moves() const { return desk_.has_value(); }
-    /// Moves the view as the pointer of `report` has dragged it, and zooms by its wheel. Requires moves().
-    void move(const haptic_bridge::PointerReport& report);
+    /// Moves the view as the pointer of `report` has dragged it, and zooms by its wheel. Returns false if the wheel
+    /// turned beyond a limit of the zoom. Requires moves().
+    bool move(const haptic_bridge::PointerReport& report);
     /// Frames the terrain, whose sand has the heights `sand` (walls::DeskView::frame). Ignored unless moves().
     void frame(const sand::HeightSpan& sand);
     /// Calls TrackedViewer::separateEyes().

@@ -100,7 +100,9 @@ void WindowDesk::moveView(std::span<haptic_bridge::PointerReport> pointers) {
     for (std::size_t rank = 0; rank < pointers.size(); ++rank) {
         haptic_bridge::PointerReport& pointer = pointers[rank];
         if (desk_.views.moves()) {
-            desk_.views.move(pointer);
+            if (!desk_.views.move(pointer)) {
+                answer(static_cast<int>(rank), pointer.wheel > 0 ? kFarthest : kNearest);
+            }
             continue;
         }
         pointer.depth += std::exchange(pointer.wheel, 0.0F);

@@ -86,9 +86,12 @@ TEST(DeskView, HasLimitsThatDoNotLoseTheSand) {
     DeskView view(wall, kField);
     view.frame({{0, 0, 0}, {4, 2, 1}});
     const double framed = view.orbit().zoom;
-    view.zoom(1e30, wall.stage.centre);
+    EXPECT_TRUE(view.zoom(1e30, wall.stage.centre));
+    EXPECT_FALSE(view.zoom(1, wall.stage.centre)) << "the limit was reached";
+    EXPECT_TRUE(view.zoom(0, wall.stage.centre)) << "the wheel rests";
     EXPECT_DOUBLE_EQ(view.orbit().zoom, framed / 4);
-    view.zoom(-1e30, wall.stage.centre);
+    EXPECT_TRUE(view.zoom(-1e30, wall.stage.centre));
+    EXPECT_FALSE(view.zoom(-1, wall.stage.centre));
     const double most = view.orbit().zoom;
     EXPECT_GT(most, 8);
     EXPECT_LE(most, DeskView::kMostZoom);

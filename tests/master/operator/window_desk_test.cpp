@@ -329,6 +329,23 @@ TEST_F(WindowDesk, MovesTheViewOfADesktopAndFramesItAgain) {
     EXPECT_EQ(desk_->views().at(0).sceneToRoom, framed);
 }
 
+TEST_F(WindowDesk, SaysThatTheViewIsAtALimitOfTheZoom) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    master::DeskOptions options;
+    options.pointer = true;
+    open(&force_, options);
+    const auto answerToWheel = [&](float notches) {
+        std::array<haptic_bridge::PointerReport, 2> pointers{};
+        pointers[1].wheel = notches;
+        desk_->windows().moveView(pointers);
+        return answerIn(1);
+    };
+    EXPECT_EQ(answerToWheel(1000), "") << "on the way to the limit";
+    EXPECT_EQ(answerToWheel(1), master::kFarthest);
+    EXPECT_EQ(answerToWheel(-1000), master::kFarthest) << "still shown";
+    EXPECT_EQ(answerToWheel(-1), master::kNearest);
+}
+
 /// Returns level sand with a high summit in the north-west corner.
 scene::Scene mountain() {
     scene::Scene scene = samples::flatScene(32, 24);
