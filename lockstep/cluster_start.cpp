@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "host/clock.hpp"
+#include "lockstep/backoff.hpp"
 #include "lockstep/cluster.hpp"
 
 namespace lockstep {
@@ -14,6 +15,19 @@ enum StartTag : int { kStartTag = 40, kRankProgressTag };
 
 constexpr double kProgress = 0.01;                 // a smaller part of some work does not count
 constexpr std::int64_t kPassOnNs = 1'000'000'000;  // least time between two notes to ranks that wait for others
+
+/// Receives the next note of the master. Sleeps meanwhile, because the master and the haptic server need the cores.
+template <class Note>
+Note receiveNote(MPI_Comm frames) {
+    Note note{};
+    MPI_Request request{};
+    MPI_Irecv(&note, 1, MPI_BYTE, kMaster, kStartTag, frames, &request);
+    int received = 0;
+    for (Backoff backoff; MPI_Test(&request, &received, MPI_STATUS_IGNORE), received == 0;) {
+        backoff.rest();
+    }
+    return note;
+}
 
 }  // namespace
 
@@ -52,7 +66,7 @@ void Cluster::awaitBroadcast() const {
         send(StartNote::broadcast);
     }
     for (auto note = StartNote::quiet; note != StartNote::broadcast && !isMaster();) {
-        MPI_Recv(&note, 1, MPI_BYTE, kMaster, kStartTag, frames_, MPI_STATUS_IGNORE);
+        note = receiveNote<StartNote>(frames_);
         mayTakeLong(note != StartNote::progress);
     }
 }
@@ -115,7 +129,7 @@ bool Cluster::agree(bool master) const {
         return master;
     }
     for (auto note = StartNote::progress;; watchdog_->arm()) {
-        MPI_Recv(&note, 1, MPI_BYTE, kMaster, kStartTag, frames_, MPI_STATUS_IGNORE);
+        note = receiveNote<StartNote>(frames_);
         if (note == StartNote::begin || note == StartNote::refuse) {
             return note == StartNote::begin;
         }

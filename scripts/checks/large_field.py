@@ -134,6 +134,7 @@ def lives(session, args):
     started = first_life(session, phases, args)
     for which in ("rank", "server"):
         session.wait("a hand", lambda status: status["linked"])
+        time.sleep(1)  # its event may come after the status
         strike(session, which, "KILL", chance)
         phases.done(f"killed a {which}, and continued")
     check_end(session, session.end())
