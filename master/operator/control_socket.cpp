@@ -13,6 +13,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "host/print_line.hpp"
@@ -47,6 +48,10 @@ const char* const kTooLong = R"({"error":"a command of more than 1024 bytes","ok
 static_assert(kLongestCommand == 1024, "kTooLong contains this number");
 
 }  // namespace
+
+std::string answerLine(const nlohmann::json& answer) {
+    return answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 ControlSocket::ControlSocket(const std::filesystem::path& folder) : folder_(folder) {
     if (const std::string failure = open(); !failure.empty()) {

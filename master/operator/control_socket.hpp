@@ -8,11 +8,15 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 namespace master {
+
+/// Returns an answer as one line of JSON. Bytes that are not UTF-8, which a user may type, are replaced.
+[[nodiscard]] std::string answerLine(const nlohmann::json& answer);
 
 /// Returns whether a client of user `peer` may command a session of user `owner`. Only the owner may; root may not.
 [[nodiscard]] constexpr bool mayCommand(uid_t peer, uid_t owner) { return peer == owner; }

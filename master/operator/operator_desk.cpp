@@ -22,11 +22,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string line(const Json& json) {
-    // A user may type bytes that are not UTF-8. They are replaced.
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
 
 }  // namespace
@@ -93,7 +88,7 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
 void OperatorDesk::obeyLine(const std::string& text, const Asker& asker) {
     try {
         if (carryOut(*this, text, asker) == Answered::atOnce && asker.client) {
-            control_->answer(*asker.client, line({{"ok", true}}));
+            control_->answer(*asker.client, answerLine({{"ok", true}}));
         }
     } catch (const base::InputError& error) {
         refuse(error.what(), {asker});
@@ -117,96 +112,6 @@ void OperatorDesk::changeMaterial(const MaterialChange& change, const Asker& ask
     askMaterial(scene::withNumber(material_, change.word, change.number, grid_), asker);
 }
 
-void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material) {
-    if (edit.kind == sand::Edit::undo && !session_.sand.replica().canUndo()) {
-        throw base::InputError("nothing to undo");
-    }
-    addEdit(std::move(edit), asker, material, {});
-}
-
-void OperatorDesk::requireRoomOnDisk(const sand::Edit& edit) {
-    // Refuses at once. Otherwise the client would wait until the disk has room, and the edit would come late.
-    if (!session_.room(session_.edits.sandBytes(edit))) {
-        if (session_.room(session_.edits.sandBytes())) {
-            throw base::InputError(
-                fmt::format("the disk has no room for {} bytes of sand in the journal; the edit was "
-                            "refused: free disk space and try again",
-                            session_.edits.sandBytes(edit) - session_.edits.sandBytes()));
-        }
-        answerEditsThatWaitForRoom();
-        throw base::InputError(
-            "the disk has no room for the journal, so the sand is stopped; the edit was refused: free disk space and "
-            "try again");
-    }
-}
-
-std::uint64_t OperatorDesk::addEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material,
-                                    const sand::History::Intent& intent) {
-    session_.edits.requireRoomFor(edit);
-    requireRoomOnDisk(edit);
-    std::optional<Client> client = asker.client;
-    if (paused_ && client) {
-        control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
-        client.reset();
-    }
-    return session_.edits.add(std::move(edit), client, material, intent);
-}
-
-void OperatorDesk::askReturn(sand::History::Move move, const Asker& asker) {
-    if (!paused_) {
-        undo_.ask({move, asker});
-        return;
-    }
-    undo_.ask({move, {}});  // answered now, because a paused session would let the client wait
-    if (asker.client) {
-        control_->answer(*asker.client, line({{"ok", true}, {"waits_for", "resume"}}));
-    } else if (asker.window) {
-        windows_.answer(*asker.window, fmt::format("{} waits until Space resumes", nameOf(move)));
-    }
-}
-
-/// Another material than the present one is another edit, before the one that restores its sand.
-std::uint64_t OperatorDesk::addReturn(sand::Edit edit, const scene::UndoHistory::Return& wanted, const Asker& asker) {
-    const scene::Material material = scene::withToolOf(wanted.material, material_);
-    if (material != material_) {
-        if (const auto fault = scene::faultOf(material, grid_)) {
-            throw base::InputError(
-                fmt::format("the material of that moment does not fit the tool: {}", fault->message));
-        }
-        session_.edits.requireRoomFor(edit);
-        requireRoomOnDisk(edit);
-        addEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), {}, material, wanted.how.intent);
-        material_ = material;
-        views_.setHumidity(material_.humidity);
-    }
-    return addEdit(std::move(edit), asker, std::nullopt, wanted.how.intent);
-}
-
-void OperatorDesk::answerReturn(const UndoDesk::Asked& asked, const ArrivedStep& shown) {
-    const std::size_t undos = undo_.entries().undosLeft(), redos = undo_.entries().redosLeft();
-    const bool undoes = asked.move == sand::History::Move::undo;
-    const std::string nothing = fmt::format("nothing to {}", nameOf(asked.move));
-    if (!undo_.changedAnything()) {
-        refuse(nothing, {{shown.client, asked.asker.window}});
-    } else if (shown.client) {
-        control_->answer(*shown.client,
-                         line({{"ok", true}, {"step", shown.step.number}, {"undo_left", undos}, {"redo_left", redos}}));
-    } else if (asked.asker.window) {
-        const std::size_t left = undoes ? undos : redos;
-        windows_.answer(*asked.asker.window,
-                        fmt::format("{}; {} more to {}", undoes ? "undone" : "redone",
-                                    left == 0 ? "nothing" : std::to_string(left), nameOf(asked.move)));
-    }
-}
-
-/// Changes the material only if the edit was accepted. Later changes start from this material.
-void OperatorDesk::askMaterial(const scene::Material& material, const Asker& asker) {
-    askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), asker, material);
-    material_ = material;
-    views_.setHumidity(material_.humidity);
-}
-
-/// The hand feels the share before the journal has it, because switching forces off must not wait for a disk.
 void OperatorDesk::shareForce(double share, const Asker& asker) {
     session_.force->shareForce(share);
     force_ = share;
@@ -222,7 +127,7 @@ void OperatorDesk::shareForce(double share, const Asker& asker) {
             *ceiling);
     }
     if (asker.client) {
-        control_->answer(*asker.client, line(answer));
+        control_->answer(*asker.client, answerLine(answer));
     } else if (capped) {
         host::printLine("{}", answer["note"].get<std::string>());
     }
@@ -266,11 +171,11 @@ void OperatorDesk::save(const std::string& name, const Asker& asker) {
             saved.sand = copy->encode();
             copy.reset();
             writeSavedSand(file, saved);
-            return BackgroundJobs::Result{line({{"ok", true},
-                                                {"file", "saves/" + file.filename().string()},
-                                                {"bytes", saved.sand.size()},
-                                                {"step", saved.step},
-                                                {"state_hash", fmt::format("{:016x}", saved.stateHash)}}),
+            return BackgroundJobs::Result{answerLine({{"ok", true},
+                                                      {"file", "saves/" + file.filename().string()},
+                                                      {"bytes", saved.sand.size()},
+                                                      {"step", saved.step},
+                                                      {"state_hash", fmt::format("{:016x}", saved.stateHash)}}),
                                           {},
                                           fmt::format("sand saved as saves/{}", file.filename().string())};
         },
@@ -310,56 +215,6 @@ void OperatorDesk::close() {
     control_.reset();
 }
 
-void OperatorDesk::answerEditsThatWaitForRoom() {
-    answerSettle({});
-    for (const Client client : session_.edits.releaseClients()) {
-        control_->answer(client, line({{"ok", true}, {"waits_for", "room"}}));
-    }
-}
-
-void OperatorDesk::answer(const ArrivedSteps& steps) {
-    const MasterSand& sand = session_.sand;
-    const auto answerIfEnded = [this, &sand] {
-        if (const std::optional<SettleEnd> end = settling_ ? sand.endOfSettle(settling_->step) : std::nullopt) {
-            answerSettle(end);
-        }
-    };
-    answerIfEnded();  // one of an earlier frame
-    for (const ArrivedStep& timed : steps) {
-        const std::uint64_t step = timed.step.number;
-        if (const std::optional<UndoDesk::Asked> ended = undo_.takeEnded(timed.step.edit.number)) {
-            answerReturn(*ended, timed);
-            continue;
-        }
-        if (!timed.client) {
-            continue;
-        }
-        if (sand.settlingSince() == step || sand.endOfSettle(step)) {
-            settling_ = {*timed.client, step, host::monotonicNs()};
-            answerIfEnded();
-        } else {
-            control_->answer(*timed.client, line({{"ok", true}, {"step", step}}));
-        }
-    }
-    if (settling_ && host::monotonicNs() - settling_->sinceNs > kSettleNs) {
-        answerSettle({});
-    }
-}
-
-void OperatorDesk::answerSettle(std::optional<SettleEnd> end) {
-    if (!settling_) {
-        return;
-    }
-    Json json{{"ok", true}, {"step", settling_->step}};
-    if (end) {
-        json["settle_ended_by"] = std::string(base::nameOf(*end));
-    } else {
-        json["settling"] = true;
-    }
-    control_->answer(settling_->client, line(json));
-    settling_.reset();
-}
-
 void OperatorDesk::takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barrier) {
     captures_.take(frame, session_.sand, shown_, barrier, jobs_);
 }
@@ -377,9 +232,9 @@ void OperatorDesk::reportStatus(const Asker& asker) {
     status["force_ceiling"] = orNull(session_.force->forceCeiling());
     status["edits_waiting"] = session_.edits.waiting().size();
     if (asker.client) {
-        control_->answer(*asker.client, line(status));
+        control_->answer(*asker.client, answerLine(status));
     } else {
-        fmt::print("{}\n", line(status));
+        fmt::print("{}\n", answerLine(status));
         std::fflush(stdout);
     }
 }
@@ -397,7 +252,7 @@ void OperatorDesk::answerAll(const Askers& askers, const BackgroundJobs::Result&
 void OperatorDesk::refuse(const std::string& why, const Askers& askers) {
     for (const Asker& asker : askers) {
         if (asker.client) {
-            control_->answer(*asker.client, line({{"ok", false}, {"error", why}}));
+            control_->answer(*asker.client, answerLine({{"ok", false}, {"error", why}}));
         } else if (asker.window) {
             windows_.answer(*asker.window, why);
         } else {

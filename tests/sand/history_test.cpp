@@ -4,14 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "tests/support/sand/sand_samples.hpp"
-#include "tests/support/sand/tin_scene.hpp"
+#include "tests/sand/history_session.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {
@@ -20,188 +17,13 @@ using sand::Edit;
 using sand::History;
 using sand::Replica;
 using Move = History::Move;
-
-/// Bytes of the sand at one moment, the hashes of its hash tiles, and the material. The bytes have the fluxes of a
-/// grid.
-struct Stop {
-    base::Bytes sand;
-    std::vector<std::uint64_t> hashes;
-    std::int32_t threshold = 0;
-    friend bool operator==(const Stop&, const Stop&) = default;
-};
-
-/// A session with a history, and the stops to which undos and redos must return.
-class Session {
-public:
-    explicit Session(const scene::Scene& scene, std::int64_t mostBytes = History::kMostBytes)
-        : rules_(scene.rules), replica_(scene), history_(replica_, mostBytes) {
-        for (const double share : {1.0, 0.7, 0.5, 0.9}) {
-            thresholds_.push_back(static_cast<std::int32_t>(share * rules_.tuning.threshold));
-        }
-    }
-
-    [[nodiscard]] Stop here() {
-        (void)replica_.stateHash();
-        return {replica_.copySand()->encode(), replica_.hashTiles().tileHashes(), replica_.rules().tuning.threshold};
-    }
-    [[nodiscard]] Replica& replica() { return replica_; }
-    [[nodiscard]] const History& history() const { return history_; }
-    [[nodiscard]] std::size_t undos() const { return undo_.size(); }
-    [[nodiscard]] std::size_t redos() const { return redo_.size(); }
-
-    void apply(sand::Step step, const History::Intent& intent = {}) {
-        step.epoch = 1;
-        step.number = replica_.stepNumber() + 1;
-        history_.begin(replica_, step, intent, label_);
-        replica_.apply(step);
-        history_.end(replica_);
-        ASSERT_TRUE(replica_.leftOut().empty()) << replica_.leftOut();
-    }
-    void hover(int steps) {
-        for (int i = 0; i < steps; ++i) {
-            apply({});
-        }
-    }
-    /// Makes a stroke of some steps. The tool then lifts, unless it `stays`.
-    void stroke(std::mt19937& random, bool stays = false) {
-        beginEntry();
-        const auto within = [&](std::int32_t cells) {
-            return static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(cells * sand::kProbePerCell));
-        };
-        sand::ProbePoint at{within(rules_.columns), within(rules_.rows), -2 * sand::kProbePerCell};
-        for (unsigned steps = 1 + random() % 4; steps > 0; --steps) {
-            at.x += within(8) - 4 * sand::kProbePerCell;
-            at.y += within(8) - 4 * sand::kProbePerCell;
-            apply({.engaged = true, .path = {at}});
-        }
-        if (!stays) {
-            apply({});
-        }
-    }
-    void edit(const Edit& edit) {
-        beginEntry();
-        apply({.engaged = replica_.engaged(), .edit = edit});
-    }
-    void material(std::size_t label) {
-        if (label != label_) {
-            beginEntry();
-        }
-        tune(label, {});
-    }
-    void otherTool(std::int32_t radius) {
-        sand::Tuning tuning = replica_.rules().tuning;
-        tuning.tool.radius = radius;
-        apply({.engaged = replica_.engaged(), .edit = Edit::tuned(tuning)});
-    }
-
-    /// Undoes or redoes an entry as a master does, and hovers for some steps until the sand has been copied. Returns
-    /// false if there is nothing to undo or redo.
-    [[nodiscard]] bool move(Move move, std::mt19937& random) {
-        const auto how = history_.beginReturn(replica_, move);
-        if (!how) {
-            return false;
-        }
-        const bool engaged = replica_.engaged();
-        if (how->edit == Edit::undo) {
-            note(move);
-            apply({.engaged = engaged, .edit = Edit::undo}, how->intent);
-            return true;
-        }
-        while (!how->sand->complete()) {
-            if (random() % 4 == 0) {
-                apply({.engaged = engaged});
-            }
-            (void)replica_.continueCopy(4000);
-        }
-        const Edit load = Edit::loaded(how->sand->encode());
-        if (how->label != label_) {
-            note(move);
-            tune(how->label, how->intent);
-        } else {
-            note(move);
-        }
-        apply({.engaged = engaged, .edit = load}, how->intent);
-        return true;
-    }
-    /// Returns the stop to which the last move must have returned.
-    [[nodiscard]] const Stop& wanted() const { return wanted_; }
-
-private:
-    void beginEntry() {
-        undo_.push_back(here());
-        redo_.clear();
-        returned_.reset();
-        if (undo_.size() > History::kMost) {
-            undo_.erase(undo_.begin());
-        }
-    }
-    /// Moves between the stops. Sand that slides after a move does not change them.
-    void note(Move move) {
-        if (move == Move::undo) {
-            redo_.push_back(returned_ ? *returned_ : here());
-            wanted_ = std::move(undo_.back());
-            undo_.pop_back();
-            returned_ = wanted_;
-        } else {
-            undo_.push_back(*returned_);
-            wanted_ = std::move(redo_.back());
-            redo_.pop_back();
-            returned_ = redo_.empty() ? std::nullopt : std::optional(wanted_);
-        }
-    }
-    void tune(std::size_t label, const History::Intent& intent) {
-        label_ = label;
-        sand::Tuning tuning = replica_.rules().tuning;
-        tuning.threshold = tuning.startThreshold = thresholds_.at(label);
-        apply({.engaged = replica_.engaged(), .edit = Edit::tuned(tuning)}, intent);
-    }
-
-    sand::Rules rules_;
-    Replica replica_;
-    History history_;
-    std::vector<std::int32_t> thresholds_;  // by label
-    std::size_t label_ = 0;
-    std::vector<Stop> undo_, redo_;
-    std::optional<Stop> returned_;
-    Stop wanted_;
-};
-
-scene::Scene gridScene() {
-    std::mt19937 random(7);
-    scene::Scene scene = samples::flatScene(150, 140);  // of nine tiles
-    scene.terrain = samples::randomField(150, 140, 3 << 16, random);
-    return scene;
-}
-
-scene::Scene tinScene() {
-    scene::Scene scene = samples::tinScene();
-    scene.rules.tuning.tool.radius = 2 * sand::kProbePerCell;
-    return scene;
-}
-
-/// Makes an entry of some kind: strokes, and each edit.
-void makeEntry(Session& session, unsigned kind, const base::Bytes& saved, std::mt19937& random) {
-    switch (kind % 8) {
-        case 2:
-            session.edit(Edit::settle);
-            return;
-        case 3:
-            session.material(1 + random() % 3);
-            return;
-        case 5:
-            session.edit(Edit::reset);
-            return;
-        case 6:
-            session.edit(Edit::loaded(saved));
-            return;
-        default:
-            session.stroke(random);
-    }
-}
+using Session = test::HistorySession;
+using test::makeEntry;
+using test::Stop;
 
 class HistoryOf : public testing::TestWithParam<bool> {
 protected:
-    [[nodiscard]] static scene::Scene sceneOf(bool tin) { return tin ? tinScene() : gridScene(); }
+    [[nodiscard]] static scene::Scene sceneOf(bool tin) { return tin ? test::tinScene() : test::gridScene(); }
     scene::Scene scene_ = sceneOf(GetParam());
 };
 INSTANTIATE_TEST_SUITE_P(GridAndTin, HistoryOf, testing::Bool(),

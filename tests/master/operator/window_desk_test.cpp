@@ -1,62 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys, wheels and pointers of the windows, without a wall.
-#include "master/operator/window_desk.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <filesystem>
 #include <fstream>
 
-#include "host/clock.hpp"
-#include "tests/master/operator/operator_desk_fixture.hpp"
+#include "tests/master/operator/window_desk_fixture.hpp"
 
 namespace {
 
 using base::Keystroke;
-using test::ArrivedStep;
+using test::control;
+using test::kShiftR;
+using test::plain;
 
-constexpr Keystroke plain(char key) { return {static_cast<std::uint16_t>(key), 0, 0}; }
-constexpr Keystroke control(char key) { return {static_cast<std::uint16_t>(key), Keystroke::kControl, 0}; }
-constexpr Keystroke kShiftR{'r', Keystroke::kShift, 0};
-
-/// The windows of a desk.
-class WindowDesk : public test::OperatorDeskTest {
-protected:
-    using OperatorDeskTest::OperatorDeskTest;
-    void openForPointer() {
-        master::DeskOptions options;
-        options.pointer = true;
-        open(&force_, options);
-    }
-    /// Presses a key in the window of rank 1.
-    void press(Keystroke key) {
-        std::vector<lockstep::Arrival> arrivals(2);
-        arrivals[1].key = key;
-        desk_->obey(arrivals);
-    }
-    /// Returns the answer that the windows of a rank show.
-    [[nodiscard]] std::string answerIn(int rank) {
-        for (const lockstep::Answer& answer : desk_->windows().answers(host::monotonicNs())) {
-            if (answer.rank == rank) {
-                return answer.text;
-            }
-        }
-        return {};
-    }
-    /// Returns the radius of the tool that was asked for last [1/256 cell].
-    [[nodiscard]] int radiusAsked() { return edits().back().tuning.tool.radius; }
-    /// Applies two steps with a stroke, so that there is one to undo.
-    void stroke() {
-        std::vector<ArrivedStep> steps(2);
-        for (ArrivedStep& timed : steps) {
-            timed.step.number = sand_.replica().stepNumber() + 1 + static_cast<std::uint64_t>(&timed - steps.data());
-            timed.step.engaged = &timed != steps.data();
-            timed.step.path = {sand::probePoint(16, 12, 0)};
-        }
-        sand_.apply(1, steps, 0, source_);
-    }
-};
+class WindowDesk : public test::WindowDeskTest {};
 
 TEST_F(WindowDesk, BeginsWithAToolThatCanBeSeenIfAskedTo) {
     const double cell = scene_.terrain.cellSize();
@@ -92,89 +51,6 @@ TEST_F(WindowDesk, TakesKeysIfTheHandIsThePointer) {
     EXPECT_EQ(edits().size(), 2U) << "there is no stroke to undo";
     press(plain('x'));
     EXPECT_EQ(edits().size(), 2U) << "a key without an action";
-}
-
-TEST_F(WindowDesk, UndoesTheLastStrokeByControlZAndByU) {
-    openForPointer();
-    stroke();
-    press(control('z'));
-    ASSERT_EQ(edits().size(), 1U);
-    EXPECT_EQ(edits()[0].kind, sand::Edit::undo);
-    press(plain('u'));
-    EXPECT_EQ(edits().size(), 1U) << "the second one waits until the first one is shown";
-    show(edits()[0]);
-    EXPECT_EQ(answerIn(1), "undone; nothing more to undo");
-    desk_->obey({});
-    EXPECT_EQ(answerIn(1), "nothing to undo");
-    EXPECT_EQ(edits().size(), 1U);
-}
-
-TEST_F(WindowDesk, RedoesByControlYAndByControlShiftZ) {
-    openForPointer();
-    press(control('y'));
-    EXPECT_EQ(answerIn(1), "nothing to redo");
-    stroke();
-    const base::Bytes dug = sand_.replica().copySand()->encode();
-    for (const Keystroke key : {control('y'), Keystroke{'z', Keystroke::kControl | Keystroke::kShift, 0}}) {
-        const std::size_t before = edits().size();
-        press(control('z'));
-        obeyUntil([&] { return edits().size() == before + 1; });
-        show(edits().back());
-        EXPECT_EQ(answerIn(1), "undone; nothing more to undo");
-        press(key);
-        obeyUntil([&] { return edits().size() == before + 2; });
-        EXPECT_EQ(edits().back().kind, sand::Edit::load);
-        show(edits().back());
-        EXPECT_EQ(answerIn(1), "redone; nothing more to redo");
-        EXPECT_EQ(sand_.replica().copySand()->encode(), dug);
-    }
-}
-
-TEST_F(WindowDesk, UndoesAReset) {
-    openForPointer();
-    stroke();
-    const base::Bytes dug = sand_.replica().copySand()->encode();
-    press(kShiftR);
-    ASSERT_EQ(edits().size(), 1U);
-    show(edits()[0]);
-    ASSERT_NE(sand_.replica().copySand()->encode(), dug);
-    press(control('z'));
-    obeyUntil([&] { return edits().size() == 2; });
-    show(edits()[1]);
-    EXPECT_EQ(answerIn(1), "undone; 1 more to undo");
-    EXPECT_EQ(sand_.replica().copySand()->encode(), dug);
-}
-
-// Humidity returns with the sand, and the tool stays.
-TEST_F(WindowDesk, UndoesHumidityWithoutTheTool) {
-    openForPointer();
-    press(plain('w'));
-    show(edits().back());
-    press(plain('3'));
-    show(edits().back());
-    ASSERT_EQ(edits().size(), 2U);
-    press(control('z'));
-    obeyUntil([&] { return edits().size() == 4; });
-    EXPECT_EQ(edits()[2].kind, sand::Edit::tune);
-    EXPECT_EQ(edits()[3].kind, sand::Edit::load);
-    show(edits()[2]);
-    show(edits()[3]);
-    EXPECT_EQ(answerIn(1), "undone; nothing more to undo");
-    EXPECT_EQ(sand_.replica().rules().tuning.tool.kind, sand::ToolKind::rectangle);
-    press(plain('w'));
-    EXPECT_EQ(answerIn(1), "humidity 10 %") << "from 0 again";
-}
-
-TEST_F(WindowDesk, LetsAnUndoWaitWhileTheSessionIsPaused) {
-    openForPointer();
-    stroke();
-    press(plain(' '));
-    press(control('z'));
-    EXPECT_EQ(answerIn(1), "undo waits until Space resumes");
-    ASSERT_EQ(edits().size(), 1U);
-    press(plain(' '));
-    show(edits()[0]);
-    EXPECT_EQ(sand_.history()->entries().redosLeft(), 1U);
 }
 
 TEST_F(WindowDesk, AnswersEachKeyInTheWindowWhereItWasPressed) {
@@ -291,78 +167,6 @@ TEST_F(WindowDesk, ChangesDepthAndSizeByTheWheelWithinTheirLimits) {
     pointers[1].size = -100;
     desk_->windows().turnWheels(pointers);
     EXPECT_EQ(edits().back().tuning.tool.radius, 3 * sand::kProbePerCell) << "away from the user is larger";
-}
-
-// The wall of these tests is in stereo, so that it is not a desktop.
-TEST_F(WindowDesk, KeepsTheViewOfAWallThatIsNoDesktop) {
-    std::array<haptic_bridge::PointerReport, 3> pointers{};
-    const auto before = desk_->views().at(0).sceneToRoom;
-    pointers[1].wheel = 3;
-    desk_->windows().moveView(pointers);
-    EXPECT_EQ(pointers[1].wheel, 0);
-    EXPECT_EQ(pointers[1].depth, 3) << "the wheel is the depth";
-    pointers[2].turnX = 0.25F;
-    EXPECT_TRUE(desk_->windows().answers(host::monotonicNs()).empty());
-    desk_->windows().moveView(pointers);
-    EXPECT_EQ(answerIn(2), "this wall's view is fixed");
-    pointers[2] = {.pan = {0, 0.1F, 0}};
-    desk_->windows().moveView(pointers);
-    EXPECT_EQ(desk_->views().at(0).sceneToRoom, before);
-}
-
-TEST_F(WindowDesk, MovesTheViewOfADesktopAndFramesItAgain) {
-    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
-    master::DeskOptions options;
-    options.pointer = true;
-    open(&force_, options);
-    const auto framed = desk_->views().at(0).sceneToRoom;
-    const std::array<haptic_bridge::PointerReport, 3> moves{
-        {{.turnX = 0.25F}, {.wheel = 1, .wheelAt = {0, 1, 0}}, {.pan = {0.1F, 0, 0}}}};
-    for (const haptic_bridge::PointerReport& move : moves) {
-        std::array<haptic_bridge::PointerReport, 2> pointers{haptic_bridge::PointerReport{}, move};
-        const auto before = desk_->views().at(0).sceneToRoom;
-        desk_->windows().moveView(pointers);
-        EXPECT_NE(desk_->views().at(0).sceneToRoom, before);
-        EXPECT_EQ(pointers[1].depth, 0);
-    }
-    press(plain('v'));
-    EXPECT_EQ(desk_->views().at(0).sceneToRoom, framed);
-}
-
-TEST_F(WindowDesk, SaysThatTheViewIsAtALimitOfTheZoom) {
-    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
-    master::DeskOptions options;
-    options.pointer = true;
-    open(&force_, options);
-    const auto answerToWheel = [&](float notches) {
-        std::array<haptic_bridge::PointerReport, 2> pointers{};
-        pointers[1].wheel = notches;
-        desk_->windows().moveView(pointers);
-        return answerIn(1);
-    };
-    EXPECT_EQ(answerToWheel(1000), "") << "on the way to the limit";
-    EXPECT_EQ(answerToWheel(1), master::kFarthest);
-    EXPECT_EQ(answerToWheel(-1000), master::kFarthest) << "still shown";
-    EXPECT_EQ(answerToWheel(-1), master::kNearest);
-}
-
-/// Returns level sand with a high summit in the north-west corner.
-scene::Scene mountain() {
-    scene::Scene scene = samples::flatScene(32, 24);
-    scene.terrain.setHeight(0, 23, scene.terrain.height(0, 23) + 40 * sand::kUnitsPerCell);
-    return scene;
-}
-
-class MountainDesk : public WindowDesk {
-protected:
-    MountainDesk() : WindowDesk(mountain()) {}
-};
-
-TEST_F(MountainDesk, BeginsWithTheWholeTerrainInView) {
-    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
-    const auto ofTheFile = master::ViewSource(wall_, scene_, {}).at(0).sceneToRoom;
-    open(&force_);
-    EXPECT_LT(desk_->views().at(0).sceneToRoom[0], ofTheFile[0]) << "smaller than the wall file has it";
 }
 
 constexpr Keystroke kEscape{Keystroke::kEscape, 0, 0};

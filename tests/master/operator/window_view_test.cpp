@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The view that pointers of the windows move.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "tests/master/operator/window_desk_fixture.hpp"
+#include "walls/wall.hpp"
+
+namespace {
+
+using test::plain;
+
+class WindowView : public test::WindowDeskTest {
+protected:
+    using WindowDeskTest::WindowDeskTest;
+};
+
+// The wall of these tests is in stereo, so that it is not a desktop.
+TEST_F(WindowView, KeepsTheViewOfAWallThatIsNoDesktop) {
+    std::array<haptic_bridge::PointerReport, 3> pointers{};
+    const auto before = desk_->views().at(0).sceneToRoom;
+    pointers[1].wheel = 3;
+    desk_->windows().moveView(pointers);
+    EXPECT_EQ(pointers[1].wheel, 0);
+    EXPECT_EQ(pointers[1].depth, 3) << "the wheel is the depth";
+    pointers[2].turnX = 0.25F;
+    EXPECT_TRUE(desk_->windows().answers(host::monotonicNs()).empty());
+    desk_->windows().moveView(pointers);
+    EXPECT_EQ(answerIn(2), "this wall's view is fixed");
+    pointers[2] = {.pan = {0, 0.1F, 0}};
+    desk_->windows().moveView(pointers);
+    EXPECT_EQ(desk_->views().at(0).sceneToRoom, before);
+}
+
+TEST_F(WindowView, MovesTheViewOfADesktopAndFramesItAgain) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    master::DeskOptions options;
+    options.pointer = true;
+    open(&force_, options);
+    const auto framed = desk_->views().at(0).sceneToRoom;
+    const std::array<haptic_bridge::PointerReport, 3> moves{
+        {{.turnX = 0.25F}, {.wheel = 1, .wheelAt = {0, 1, 0}}, {.pan = {0.1F, 0, 0}}}};
+    for (const haptic_bridge::PointerReport& move : moves) {
+        std::array<haptic_bridge::PointerReport, 2> pointers{haptic_bridge::PointerReport{}, move};
+        const auto before = desk_->views().at(0).sceneToRoom;
+        desk_->windows().moveView(pointers);
+        EXPECT_NE(desk_->views().at(0).sceneToRoom, before);
+        EXPECT_EQ(pointers[1].depth, 0);
+    }
+    press(plain('v'));
+    EXPECT_EQ(desk_->views().at(0).sceneToRoom, framed);
+}
+
+TEST_F(WindowView, SaysThatTheViewIsAtALimitOfTheZoom) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    master::DeskOptions options;
+    options.pointer = true;
+    open(&force_, options);
+    const auto answerToWheel = [&](float notches) {
+        std::array<haptic_bridge::PointerReport, 2> pointers{};
+        pointers[1].wheel = notches;
+        desk_->windows().moveView(pointers);
+        return answerIn(1);
+    };
+    EXPECT_EQ(answerToWheel(1000), "") << "on the way to the limit";
+    EXPECT_EQ(answerToWheel(1), master::kFarthest);
+    EXPECT_EQ(answerToWheel(-1000), master::kFarthest) << "still shown";
+    EXPECT_EQ(answerToWheel(-1), master::kNearest);
+}
+
+/// Returns level sand with a high summit in the north-west corner.
+scene::Scene mountain() {
+    scene::Scene scene = samples::flatScene(32, 24);
+    scene.terrain.setHeight(0, 23, scene.terrain.height(0, 23) + 40 * sand::kUnitsPerCell);
+    return scene;
+}
+
+class MountainDesk : public WindowView {
+protected:
+    MountainDesk() : WindowView(mountain()) {}
+};
+
+TEST_F(MountainDesk, BeginsWithTheWholeTerrainInView) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    const auto ofTheFile = master::ViewSource(wall_, scene_, {}).at(0).sceneToRoom;
+    open(&force_);
+    EXPECT_LT(desk_->views().at(0).sceneToRoom[0], ofTheFile[0]) << "smaller than the wall file has it";
+}
+
+}  // namespace
