@@ -47,7 +47,7 @@ std::int64_t freeMemory() {
     // /proc/meminfo does not show the limit of a container.
     const auto most = numberIn("/sys/fs/cgroup/memory.max");
     const auto used = numberIn("/sys/fs/cgroup/memory.current");
-    // The system gives the memory of files that nobody uses back.
+    // The system frees pages of files before it ends a process for lack of memory.
     const std::int64_t files = numberOf("inactive_file", "/sys/fs/cgroup/memory.stat").value_or(0);
     return std::min(available(), most && used ? std::max<std::int64_t>(*most - *used + files, 0) : kUnlimited);
 }

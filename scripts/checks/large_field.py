@@ -27,28 +27,13 @@ import random_kills
 from ask import session_control
 from base import events
 from base.command_line import Parser, at_least
-from job import processes
 from random_kills import Session, Violation, check_end, strike
-from sessions.raster_session import HEADER, make_scene, memory_of
+from sessions.raster_session import HEADER, busy_processes, make_scene, memory_of
+from sessions.session_cost import WALL
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE = 600  # [s], of a phase on a busy machine
 NOISE = 1.25  # largest ratio of two times that may be equal
-WALL = """[viewer]
-eye = [0.0, 1.6, 2.0]
-[stereo]
-mode = "anaglyph"
-[grid]
-rows = 1
-columns = {ranks}
-tile_size = [1.024, 0.768]
-tile_pixels = [512, 384]
-lower_left = [-1.024, 0.9, 0.0]
-[stage]
-centre = [0.0, 1.25, -0.3]
-width = 1.5
-tilt_deg = 40
-"""
 
 
 def make_rough(folder, side):
@@ -155,13 +140,12 @@ def main():
     args = parser.parse_args()
     if sys.byteorder != "little":
         parser.error("the raster is made on little-endian machines only")
-    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"], preexec_fn=processes.die_with(os.getpid())) for _ in range(args.busy)]
     random_kills.PATIENCE_SECONDS = PATIENCE
     session = None
     try:
-        with tempfile.TemporaryDirectory(prefix="sandwall-large-") as name:
+        with busy_processes(args.busy), tempfile.TemporaryDirectory(prefix="sandwall-large-") as name:
             folder = pathlib.Path(name)
-            (folder / "wall.toml").write_text(WALL.format(ranks=args.ranks))
+            (folder / "wall.toml").write_text(WALL.replace("columns = 2", f"columns = {args.ranks}"))
             args.scene, args.wall = str(make_scene(folder, args.side, rough=False) if args.smooth else make_rough(folder, args.side)), str(folder / "wall.toml")
             args.options, args.frame_timeout = ["--here"], None
             session = Session(args)
@@ -170,8 +154,6 @@ def main():
         print(f"large_field.py: {violation}", file=sys.stderr)
         return 1
     finally:
-        for process in busy:
-            process.kill()
         if session and session.launcher and session.launcher.poll() is None:
             session.launcher.send_signal(signal.SIGTERM)
             with contextlib.suppress(subprocess.TimeoutExpired):

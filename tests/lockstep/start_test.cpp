@@ -2,10 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <string>
 
 #include "tests/support/processes/run_ranks.hpp"
 
 namespace {
+
+/// Starts ranks with a limit of `seconds` for the start.
+support::Ran startedWith(int seconds, int ranks, const char* what) {
+    setenv("SANDWALL_START_TIMEOUT", std::to_string(seconds).c_str(), 1);
+    support::Ran ran = support::runRanks(ranks, "start_ranks", what, "vader");
+    unsetenv("SANDWALL_START_TIMEOUT");
+    return ran;
+}
 
 TEST(Start, RanksTakeTheProgressOfTheMasterBeforeTheBroadcast) {
     for (const char* what : {"", "'goes back'", "refused"}) {
@@ -17,9 +26,7 @@ TEST(Start, RanksTakeTheProgressOfTheMasterBeforeTheBroadcast) {
 
 // Without the progress, the ranks would wait for an hour.
 TEST(Start, AMasterWhoseWorkGetsNoFurtherIsNamedAfterTheLimit) {
-    setenv("SANDWALL_START_TIMEOUT", "3", 1);
-    const support::Ran ran = support::runRanks(2, "start_ranks", "hangs", "vader");
-    unsetenv("SANDWALL_START_TIMEOUT");
+    const support::Ran ran = startedWith(3, 2, "hangs");
     EXPECT_EQ(ran.status, 1) << ran.output;
     EXPECT_NE(ran.output.find("the start waits for the made-up work for "), std::string::npos) << ran.output;
     EXPECT_NE(ran.output.find("the limit is 3 s, ending the job"), std::string::npos) << ran.output;
@@ -27,17 +34,13 @@ TEST(Start, AMasterWhoseWorkGetsNoFurtherIsNamedAfterTheLimit) {
 
 // The last rank takes 8 s. Without its progress the master would give up after 3 s, and the first rank after 6 s.
 TEST(Start, NobodyGivesUpWhileARankGetsFurther) {
-    setenv("SANDWALL_START_TIMEOUT", "3", 1);
-    const support::Ran ran = support::runRanks(3, "start_ranks", "'slow rank'", "vader");
-    unsetenv("SANDWALL_START_TIMEOUT");
+    const support::Ran ran = startedWith(3, 3, "'slow rank'");
     EXPECT_EQ(ran.status, 0) << ran.output;
     EXPECT_NE(ran.output.find("3 ranks, the last has 3 bytes; 1.00 made\n"), std::string::npos) << ran.output;
 }
 
 TEST(Start, ARankThatGetsNoFurtherIsNamedAfterTheLimit) {
-    setenv("SANDWALL_START_TIMEOUT", "1", 1);
-    const support::Ran ran = support::runRanks(3, "start_ranks", "'hanging rank'", "vader");
-    unsetenv("SANDWALL_START_TIMEOUT");
+    const support::Ran ran = startedWith(1, 3, "'hanging rank'");
     EXPECT_EQ(ran.status, 1) << ran.output;
     EXPECT_NE(ran.output.find("the start waits for rank 2 for "), std::string::npos) << ran.output;
 }

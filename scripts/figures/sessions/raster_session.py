@@ -44,8 +44,22 @@ talus_deg = 34
 """
 
 
+@contextlib.contextmanager
+def busy_processes(count):
+    """Scope in which `count` processes compute beside the sessions."""
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"], preexec_fn=die_with_parent) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+
+
 def make_scene(folder, side, rough):
-    """Writes a scene with a raster of dunes, with noise of ±3 m if `rough`. Returns its file."""
+    """Writes a scene with a raster of dunes. Returns its file.
+
+    A `rough` one has noise of ±3 m, and its rows do not fit together, so that most of its sand slides from the start.
+    """
     noise = random.Random(1)
     profile = array.array("h", (round(400 + 200 * math.sin(x / 300) + 60 * math.sin(x / 70)) + (noise.randint(-3, 3) if rough else 0)
                                 for x in range(side + 2000)))

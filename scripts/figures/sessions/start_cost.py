@@ -12,7 +12,6 @@ usage: scripts/figures/sessions/start_cost.py BIN [BIN ...] [--sides 512 3601 10
 import os
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
@@ -20,8 +19,8 @@ import time
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from base.command_line import at_least
-from sessions.measured_session import Failed, Parser, die_with_parent
-from sessions.raster_session import PROGRAMS, RasterSession, make_scene, print_table
+from sessions.measured_session import Failed, Parser
+from sessions.raster_session import PROGRAMS, RasterSession, busy_processes, make_scene, print_table
 
 REST = 6  # [s] after the stroke; by then the memory of sand at rest has been given back
 
@@ -56,10 +55,9 @@ def main():
     parser.add_argument("--wall", default="desktop", help="wall: a sample's name or a file (default: desktop)")
     args = parser.parse_args()
     load, rows = os.getloadavg()[0], []
-    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"], preexec_fn=die_with_parent) for _ in range(args.busy)]
     try:
         for side in args.sides:
-            with tempfile.TemporaryDirectory(prefix="sandwall-start-") as name:
+            with busy_processes(args.busy), tempfile.TemporaryDirectory(prefix="sandwall-start-") as name:
                 folder = pathlib.Path(name)
                 scene = make_scene(folder, side, args.rough)
                 runs = {programs: [] for programs in args.programs}
@@ -70,9 +68,6 @@ def main():
     except Failed as complaint:
         print(f"start_cost.py: {complaint}", file=sys.stderr)
         return 1
-    finally:
-        for process in busy:
-            process.kill()
     print_table(["field", "build", "first frame [s]", "linked [s]", "end [s]", "server (peak) [byte/cell]", "master", "rank"], rows,
                 f"; {args.busy} busy processes; load average {load:.1f} before and {os.getloadavg()[0]:.1f} after")
     return 0
