@@ -31,6 +31,7 @@ void History::beginEntry(Replica& replica, bool strokeIsKept) {
     returned_.reset();
     replica.recorder().follow({});
     undo_.push_back({replica.recorder().record(), label_});
+    returnedLabel_ = label_;  // beginEdit() sets that of a change of the material
     if (undo_.size() > kMost) {
         undo_.erase(undo_.begin());
     }
@@ -155,9 +156,9 @@ void History::trim(Replica& replica) {
         return;
     }
     while (bytes() > mostBytes_) {
-        if (undo_.size() > 1 || redo_.empty()) {
+        if (undo_.size() > 1 || (redo_.empty() && !undo_.empty())) {
             undo_.erase(undo_.begin());
-        } else {
+        } else if (!redo_.empty()) {
             redo_.erase(redo_.begin());
         }
         if (redo_.empty()) {

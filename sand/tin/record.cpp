@@ -36,7 +36,9 @@ std::shared_ptr<SurfaceRecord> Records::record(const VertexSand& layer, const Ti
 }
 
 void Records::follow(const VertexSand& layer, SurfaceRecords records) {
-    bringUpToDate(layer);
+    if (parts_) {  // without a record so far, as in a rank, nothing has a copy of the sand
+        bringUpToDate(layer);
+    }
     followed_.follow(std::move(records));
 }
 

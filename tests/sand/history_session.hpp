@@ -83,6 +83,13 @@ public:
         }
         tune(label, {});
     }
+    /// Applies the change of the material alone, as of an undo whose load has not come yet.
+    void tune(std::size_t label, const sand::History::Intent& intent) {
+        label_ = label;
+        sand::Tuning tuning = replica_.rules().tuning;
+        tuning.threshold = tuning.startThreshold = thresholds_.at(label);
+        apply({.engaged = replica_.engaged(), .edit = sand::Edit::tuned(tuning)}, intent);
+    }
     void otherTool(std::int32_t radius) {
         sand::Tuning tuning = replica_.rules().tuning;
         tuning.tool.radius = radius;
@@ -109,11 +116,9 @@ public:
             (void)replica_.continueCopy(4000);
         }
         const sand::Edit load = sand::Edit::loaded(how->sand->encode());
+        note(move);
         if (how->label != label_) {
-            note(move);
             tune(how->label, how->intent);
-        } else {
-            note(move);
         }
         apply({.engaged = engaged, .edit = load}, how->intent);
         return true;
@@ -144,13 +149,6 @@ private:
             returned_ = redo_.empty() ? std::nullopt : std::optional(wanted_);
         }
     }
-    void tune(std::size_t label, const sand::History::Intent& intent) {
-        label_ = label;
-        sand::Tuning tuning = replica_.rules().tuning;
-        tuning.threshold = tuning.startThreshold = thresholds_.at(label);
-        apply({.engaged = replica_.engaged(), .edit = sand::Edit::tuned(tuning)}, intent);
-    }
-
     sand::Rules rules_;
     sand::Replica replica_;
     sand::History history_;

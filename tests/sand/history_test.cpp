@@ -161,6 +161,18 @@ TEST_P(HistoryOf, ALoadThatComesAfterANewStrokeIsAnEntry) {
     EXPECT_TRUE(session.here() == after) << "no sand is lost";
 }
 
+TEST_P(HistoryOf, AStrokeBetweenTheEditsOfAnUndoKnowsItsMaterial) {
+    std::mt19937 random(6);
+    Session session(scene_);
+    session.material(1);
+    const auto how = session.history().beginReturn(session.replica(), Move::undo);
+    ASSERT_TRUE(how);
+    ASSERT_EQ(how->label, 0U);
+    session.tune(how->label, how->intent);
+    session.stroke(random);
+    EXPECT_EQ(session.history().beginReturn(session.replica(), Move::undo)->label, 0U);
+}
+
 TEST_P(HistoryOf, TheOldestEntriesGoWhenTheRecordsTakeTooMuchMemory) {
     std::mt19937 random(8);
     Session plain(scene_);

@@ -168,7 +168,7 @@ Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThre
     result.atRest = erosion.settled();
     result.outflow += erosion.takeOutflow();
     if (limit == nullptr || result.atRest) {
-        (void)layer.stopMoving();
+        layer.stopMoving();
     }
     for (std::size_t i = 0; i < before.size(); ++i) {
         if (layer.volumes()[i] != before[i] || (moving[i] | layer.moving()[i]) != 0) {

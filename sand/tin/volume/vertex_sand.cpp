@@ -99,16 +99,7 @@ void VertexSand::setHeight(Vertex vertex, std::int32_t height) {
     setVolume(vertex, static_cast<std::int64_t>(volume));
 }
 
-std::vector<Vertex> VertexSand::stopMoving() {
-    std::vector<Vertex> stopped;
-    for (std::size_t i = 0; i < moving_.size(); ++i) {
-        if (moving_[i] != 0) {
-            stopped.push_back(static_cast<Vertex>(i));
-            moving_[i] = 0;
-        }
-    }
-    return stopped;
-}
+void VertexSand::stopMoving() { std::fill(moving_.begin(), moving_.end(), std::uint8_t{0}); }
 
 Vertex VertexSand::insert(LatticePoint place) {
     const Vertex vertex = mesh_.insert(place);

@@ -78,8 +78,8 @@ public:
     void add(Vertex vertex, std::int64_t volume);
     void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // of a living vertex; changes the total volume
     void setMoving(Vertex vertex, bool moving) { moving_[static_cast<std::size_t>(vertex)] = moving ? 1 : 0; }
-    /// Lets no sand move. Returns the vertices whose sand moved, in ascending order.
-    std::vector<Vertex> stopMoving();
+    /// Lets no sand move.
+    void stopMoving();
 
     /// These functions change the mesh as those of Mesh do, and keep the total volume exactly. A new vertex gets the
     /// height of the previous surface there.
