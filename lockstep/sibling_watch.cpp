@@ -72,8 +72,9 @@ bool isOfJob(const std::string& process) {
 std::map<std::string, State> childrenOf(const std::string& process) {
     std::map<std::string, State> children;
     std::error_code none;
-    for (const auto& entry : fs::directory_iterator("/proc", none)) {
-        const std::string name = entry.path().filename().string();
+    for (fs::directory_iterator entry("/proc", none); !none && entry != fs::directory_iterator();
+         entry.increment(none)) {
+        const std::string name = entry->path().filename().string();
         if (name.front() < '1' || name.front() > '9') {
             continue;  // no process
         }
@@ -134,6 +135,9 @@ SiblingWatch::~SiblingWatch() {
 
 void SiblingWatch::watch(int announced, int patience) {
     const std::string parent = std::to_string(getppid());
+    if (isOfJob(parent)) {
+        return;  // a script that mpirun has started stands between, so that the others are not among its children
+    }
     Siblings siblings(parent);
     std::optional<State> before;
     int asleep = 0;  // looks in a row at which mpirun slept and a process was missing

@@ -53,7 +53,12 @@ API int sw_dig_scene(const char* name, std::uint32_t high, std::uint32_t low) {
 }
 /// Begins on the sand with which the session that is dug now began.
 API int sw_dig_again(std::uint32_t high, std::uint32_t low) {
-    return digs.guarded([=] { return begin(digs.dug->scene(), high, low); });
+    return digs.guarded([=] {
+        if (digs.dug == nullptr) {
+            throw base::InputError("there is no sand to begin again with");
+        }
+        return begin(digs.dug->scene(), high, low);
+    });
 }
 /// Begins to continue with a journal of this page, whose parts were added. sw_return_on() computes its steps.
 API int sw_return(const char* name) {

@@ -65,6 +65,9 @@ public:
             std::visit(*this, *record);
             tell(replica_.stepNumber());
         }
+        if (how_.progress) {
+            how_.progress(1);  // also if the journal ends within a record
+        }
         if (replica_.stepNumber() < step_) {
             throw base::InputError(
                 fmt::format("{}: ends at step {}, before step {}", journal_.string(), replica_.stepNumber(), step_));

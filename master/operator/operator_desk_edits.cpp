@@ -68,7 +68,7 @@ std::uint64_t OperatorDesk::addReturn(sand::Edit edit, const scene::UndoHistory:
             throw base::InputError(
                 fmt::format("the material of that moment does not fit the tool: {}", fault->message));
         }
-        session_.edits.requireRoomFor(edit);
+        session_.edits.requireRoomFor(edit, 2);
         requireRoomOnDisk(edit);
         addEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), {}, material, wanted.how.intent);
         material_ = material;

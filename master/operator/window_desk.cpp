@@ -8,6 +8,7 @@
 
 #include "base/input_error.hpp"
 #include "host/clock.hpp"
+#include "host/print_line.hpp"
 #include "master/journal/saved_sand.hpp"
 
 namespace master {
@@ -28,7 +29,7 @@ void WindowDesk::frameView() {
 void WindowDesk::obey(base::Keystroke key, int rank, std::int64_t nowNs) {
     using base::Keystroke;
     const std::optional<lockstep::KeyFound> found = lockstep::findKey(key);
-    if (!found && pointer_ && !lockstep::findKey(key.once()) && key.repeated == 0 &&
+    if (!found && pointer_ && key.repeated == 0 &&
         (key.modifiers & (Keystroke::kSuper | Keystroke::kAlt)) == 0) {  // those belong to the desktop
         answer(rank, kNoSuchKey);
     }
@@ -137,7 +138,11 @@ void WindowDesk::resizeTool(double notches, int rank) {
 
 void WindowDesk::enlargeTool() {
     if (desk_.material.toolRadius < toolLimits_.usual) {
-        desk_.carryOut(fmt::format("tool radius={}", toolLimits_.usual), 0);
+        try {
+            desk_.carryOut(fmt::format("tool radius={}", toolLimits_.usual), 0);
+        } catch (const base::InputError& error) {  // such as a full disk; the session goes on
+            host::printLine("the tool keeps the size of the scene: {}", error.what());
+        }
     }
 }
 

@@ -15,12 +15,12 @@ std::int64_t bytesOf(const sand::Edit& edit) { return edit.sand ? static_cast<st
 
 }  // namespace
 
-void Edits::requireRoomFor(const sand::Edit& edit) const {
+void Edits::requireRoomFor(const sand::Edit& edit, std::size_t count) const {
     const auto loads = [](const Asked& asked) { return asked.edit.kind == sand::Edit::load; };
     if (edit.kind == sand::Edit::load && std::ranges::any_of(waiting_, loads)) {
         throw base::InputError("another load waits for its step already");
     }
-    if (waiting_.size() >= kMost) {
+    if (waiting_.size() + count > kMost) {
         throw base::InputError(fmt::format("{} edits wait for their steps already", waiting_.size()));
     }
 }

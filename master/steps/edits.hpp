@@ -29,8 +29,8 @@ public:
     explicit Edits(std::uint64_t last = 0) : last_(last) {}
 
     /// Throws base::InputError if too many edits wait. Also throws if `edit` is a load and another load waits, because
-    /// each load holds the whole sand.
-    void requireRoomFor(const sand::Edit& edit) const;
+    /// each load holds the whole sand. `count` edits are added together.
+    void requireRoomFor(const sand::Edit& edit, std::size_t count = 1) const;
     /// Adds an edit under the next number, and returns this number.
     std::uint64_t add(sand::Edit edit, std::optional<Client> client, std::optional<scene::Material> material,
                       const sand::History::Intent& intent = {});

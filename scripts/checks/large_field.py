@@ -24,7 +24,7 @@ import time
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / room) for room in ("checks", "figures", "launcher")]
 import random_kills
-from ask import session_control
+from ask import session_control, session_results
 from base import events
 from base.command_line import Parser, at_least
 from random_kills import Session, Violation, check_end, strike
@@ -123,6 +123,8 @@ def lives(session, args):
         strike(session, which, "KILL", chance)
         phases.done(f"killed a {which}, and continued")
     check_end(session, session.end())
+    if args.ranks > 1 and not session_results.read_summary(session.out)["divergences"]:
+        raise Violation("no rank was healed")
     phases.began = time.monotonic()
     resumed_life(session, phases, started)
     session.wait("a hand", lambda status: status["linked"])

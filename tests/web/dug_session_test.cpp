@@ -160,6 +160,20 @@ TEST_F(Dug, ContinuesWithAKeptJournal) {
     EXPECT_EQ(replayed(hash_).leftOut, 0U);
 }
 
+// The undo may change the material, so a change that starts from the present one would bring it back.
+TEST_F(Dug, RefusesAChangeOfTheMaterialWhileAnUndoWaits) {
+    session_->setNumber("humidity", 0.5);
+    advance(1);
+    session_->ask(sand::Edit::undo);
+    EXPECT_THROW(session_->setNumber("talus", 20), base::InputError);
+    EXPECT_THROW(session_->setTool({.radius = 3}), base::InputError);
+    advance(3);
+    EXPECT_EQ(session_->material().humidity, 0) << "undone";
+    session_->setNumber("talus", 20);
+    advance(1);
+    EXPECT_EQ(session_->material().humidity, 0);
+}
+
 TEST_F(Dug, LiftsTheToolOfAKeptStrokeFirst) {
     for (int i = 0; i < 10; ++i) {
         point(20 + i, 30, true);

@@ -178,6 +178,7 @@ async function keys() {
         await withControl("z");
     }
     assert.equal(await canUndo(), false, "all is undone");
+    await until(`document.getElementById("number").value === "0"`);
     await withControl("y");
     assert.ok(await canUndo(), "an entry is back");
     await withControl("z");

@@ -152,6 +152,9 @@ void DugSession::setDepth(double depth) {
 }
 
 void DugSession::ask(const scene::Material& material) {
+    if (std::any_of(asked_.begin(), asked_.end(), [](const Asked& asked) { return asked.returns.has_value(); })) {
+        throw base::InputError("an undo or a redo waits for its step; try again then");  // it may change the material
+    }
     ask(sand::Edit::tuned(scene::tuningOf(material, grid_)), material);
     material_ = material;
 }

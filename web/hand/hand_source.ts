@@ -17,6 +17,7 @@ export class HandSource implements StepSource {
     private changed = true;        // since the frame that was sent last
     private told = -kProgressMs;
     private toldStep = -1;
+    private toldMaterial = "";
     private longest = 0;           // ms, of a step since the message before
     private resting = 0;           // steps
     private pressed = false;
@@ -88,10 +89,16 @@ export class HandSource implements StepSource {
         this.longest = Math.max(this.longest, performance.now() - before);
     }
 
-    private tellMaterial(): void { this.stage.tell({ kind: "material", ...this.replica.material }); }
+    private tellMaterial(): void {
+        this.toldMaterial = JSON.stringify(this.replica.material);
+        this.stage.tell({ kind: "material", ...this.replica.material });
+    }
     private tellStep(busy: string): void {
         this.told = performance.now();
         this.toldStep = this.replica.step;
+        if (JSON.stringify(this.replica.material) !== this.toldMaterial) {  // an undo or a redo has changed it
+            this.tellMaterial();
+        }
         this.stage.tell({ kind: "dug", step: this.toldStep, hash: this.replica.hash, undo: this.replica.canUndo, busy });
     }
 }

@@ -198,7 +198,7 @@ def serve(args):
     try:
         server = server_at(args.port, page, journal)
     except (OSError, OverflowError) as error:
-        raise BadInput(f"port {args.port}: cannot be used ({getattr(error, 'strerror', None) or error}); choose another --port") from error
+        raise BadInput(f"port {USUAL_PORT if args.port is None else args.port}: cannot be used ({getattr(error, 'strerror', None) or error}); choose another --port") from error
     with server:
         query = f"?journal={web_files.JOURNAL}" if journal else ""
         print(f"http://{HOST}:{server.server_port}/{query}", flush=True)

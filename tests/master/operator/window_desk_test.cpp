@@ -32,6 +32,16 @@ TEST_F(WindowDesk, BeginsWithAToolThatCanBeSeenIfAskedTo) {
     EXPECT_EQ(edits().size(), asked) << "the scene's tool is large enough";
 }
 
+TEST_F(WindowDesk, KeepsTheToolOfTheSceneOnAFullDisk) {
+    master::DeskOptions options;
+    options.pointer = options.visibleTool = true;
+    scene_.material.toolRadius = 0.5 * scene_.terrain.cellSize();
+    room_ = false;
+    const std::size_t asked = edits().size();
+    EXPECT_NO_THROW(open(&force_, options));
+    EXPECT_EQ(edits().size(), asked);
+}
+
 TEST_F(WindowDesk, TakesKeysIfTheHandIsThePointer) {
     desk_->obey({{.key = kShiftR}, {.key = plain('h')}});
     EXPECT_TRUE(edits().empty()) << "another hand";
