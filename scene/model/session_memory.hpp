@@ -14,7 +14,7 @@
 ///
 /// The figures are for sand as rough as can be, whose heights cannot be compressed. Smooth sand takes less. They leave
 /// out a `settle` of an operator (docs/limits.md), a state that is sent to a rank or a server during the session, and
-/// the strokes and edits that a master can undo (sand::History), which are bounded.
+/// the strokes and edits that a master can undo (sand::History).
 namespace scene {
 
 /// Stages of a process in which its memory differs.
