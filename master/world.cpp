@@ -67,7 +67,8 @@ std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, const Memor
     }
     std::optional<ResumedSession> resumed =
         readSession(journal, options.scene,
-                    {.read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
+                    {.scene = told(cluster, "read", "reads the scene", "the reading of its scene"),
+                     .read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
                      .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")},
                     options.session.executor);
     cluster.progressEnds();

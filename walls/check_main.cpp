@@ -6,6 +6,7 @@
 
 #include "base/input_error.hpp"
 #include "host/command_line.hpp"
+#include "host/memory.hpp"
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
 #include "walls/check_scene.hpp"
@@ -20,7 +21,7 @@ namespace {
 struct Options {
     std::string wall, newGrid, scene, stereo, svg, desk;
     bool mono = false, ranks = false, hosts = false, outputs = false, cells = false, memory = false,
-         noCheckpoints = false;
+         noCheckpoints = false, freeMemory = false;
 };
 
 walls::Wall wallOf(const Options& options) {
@@ -31,6 +32,10 @@ walls::Wall wallOf(const Options& options) {
 }
 
 int check(const Options& options) {
+    if (options.freeMemory) {
+        fmt::print("free {}\n", host::freeMemory());
+        return 0;
+    }
     if (options.cells && options.scene.empty()) {
         throw base::InputError("--cells: name a scene with --scene");
     }
@@ -103,6 +108,8 @@ int main(int argc, char** argv) {
             .excludes(ranks)
             .excludes(hosts);
     line.flag("--no-checkpoints", options.noCheckpoints, "with --memory: of a master that writes no checkpoints");
+    line.flag("--free-memory", options.freeMemory,
+              "print only the memory that is free on this machine, or in this control group [byte]");
     line.flag("--outputs", options.outputs, "print only the number of outputs, and of those with a place on a screen")
         .excludes(ranks)
         .excludes(hosts)

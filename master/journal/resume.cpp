@@ -10,11 +10,10 @@
 #include <utility>
 
 #include "base/input_error.hpp"
-#include "host/memory.hpp"
 #include "host/print_line.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
-#include "scene/load/memory.hpp"
+#include "master/journal/scene_check.hpp"
 
 namespace master {
 namespace {
@@ -177,28 +176,6 @@ struct Walk {
     void operator()(const journal::JournalForce& force) { session.forceShare = force.share; }
 };
 
-void requireScene(const journal::JournalReader& reader, const std::string& file) {
-    if (file.empty()) {
-        return;
-    }
-    const auto fail = [&] {
-        throw base::InputError(
-            fmt::format("{}: is not the scene of the session in {}; leave --scene out to continue "
-                        "that session, or choose another --out",
-                        file, reader.place().journal));
-    };
-    const auto raster = scene::checksOfOneReplica(file, host::freeMemoryOfProcess()).raster;
-    // Refuses a scene of another size before its heights are made.
-    const auto otherSize = [&, recorded = sand::FieldSize::of(journal::rulesOf(reader))](const sand::FieldSize& size) {
-        if (size != recorded) {
-            fail();
-        }
-    };
-    if (!scene::loadScene(file, {.raster = raster, .field = otherSize}).isEncodedAs(reader.header().scene)) {
-        fail();
-    }
-}
-
 /// Returns the sand of a checkpoint, or nullopt after a line that says why it is left out. Only the checkpoint is left
 /// out if this machine has no memory: without memory for a step, the replay cannot go on from any checkpoint.
 std::optional<sand::Replica> usableCheckpoint(const fs::path& file, const journal::JournalHeader& header,
@@ -270,9 +247,10 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
         return std::nullopt;
     }
     journal::JournalReader reader = openJournal(journal);
-    requireScene(reader, scene);
+    SceneCheck check(scene, sand::FieldSize::of(journal::rulesOf(reader)), reader.place().journal);
     ResumedSession session;
     session.scene = journal::sceneOf(reader, scene::Scene::Keep::packedToo);
+    check.require(session.scene, progress.scene);
     session.scene.material = session.material = reader.header().material.value_or(scene::Material());
     Walk walk{session, journal, {}};
     const auto all = static_cast<double>(allBytes(journal));

@@ -89,6 +89,7 @@ struct ResumedSession {
 /// Functions that readSession() calls with the part of some work that is done, 0 to 1. Each may be empty. Each is
 /// called with 1 when its work ends. A replay that begins again calls `replayed` with a smaller part.
 struct ResumeProgress {
+    std::function<void(double)> scene{};     // reading the file of the scene, to compare it with the journal's scene
     std::function<void(double)> read{};      // reading the records of the journal
     std::function<void(double)> replayed{};  // replaying the steps of the journal
 };

@@ -32,16 +32,19 @@ struct Statements {
     }
 };
 
+/// What is written of a scene. `settings` is all without sand and statements.
+enum class Content : bool { settings, all };
+
 /// Form of the parts of a scene. Statements are the last part, so that a scene without them has the same first bytes.
 template <class AnyScene>
 struct Parts {
     AnyScene& scene;
-    bool withStatements;
+    Content content;
     void put(base::ByteWriter& writer) const {
         if (scene.georeference != Georeference{}) {
             base::putMember(writer, Part{Part::Kind::georeference, base::encoded(scene.georeference)});
         }
-        if (scene.statements && withStatements) {
+        if (scene.statements && content == Content::all) {
             Statements named{*scene.statements};
             for (RasterStatement& statement : named.statements) {
                 // A journal is given to other people, and its reader has no use for the folders of this machine.
@@ -67,9 +70,14 @@ template <class AnyScene>
 struct Sand {
     AnyScene& scene;
     double cellSize;  // [scene unit]
+    Content content;
     sand::Start::Keep keep;
     const std::function<void(std::size_t)>& decoded;
-    void put(base::ByteWriter& writer) const { scene.encodeSand(writer); }
+    void put(base::ByteWriter& writer) const {
+        if (content == Content::all) {
+            scene.encodeSand(writer);
+        }
+    }
     void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyScene>) {
         scene.decodeSand(reader, cellSize, keep, decoded);
     }
@@ -90,7 +98,7 @@ struct Head {
 template <class AnyScene>
 struct Whole {
     AnyScene& scene;
-    bool withStatements = true;
+    Content content = Content::all;
     sand::Start::Keep keep = sand::Start::Keep::heights;
     std::function<void(std::size_t)> decoded{};
     template <class Self, class Visit>
@@ -100,10 +108,10 @@ struct Whole {
         double cellSize = scene.terrain.cellSize();
         visit("cell_size",
               base::limited(cellSize, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()));
-        visit("sand", Sand<AnyScene>{scene, cellSize, it.keep, it.decoded});
+        visit("sand", Sand<AnyScene>{scene, cellSize, it.content, it.keep, it.decoded});
         Look::fields(scene.look, visit);
         sand::ForceConstants::fields(scene.force, visit);
-        visit("parts", Parts<AnyScene>{scene, it.withStatements});
+        visit("parts", Parts<AnyScene>{scene, it.content});
     }
 };
 
@@ -111,18 +119,10 @@ struct Whole {
 
 base::Bytes Scene::encode() const { return base::encoded(Whole<const Scene>{*this}); }
 
-bool Scene::isEncodedAs(std::span<const std::uint8_t> bytes) const {
-    Scene other;
-    try {
-        other = decode(bytes);
-    } catch (const base::FormatError&) {
-        return false;
-    }
-    if (!sameHeights(terrain, other.terrain)) {
-        return false;
-    }
-    other.packed = packed;  // another build may have compressed the same sand to other bytes
-    return base::encoded(Whole<const Scene>{*this, false}) == base::encoded(Whole<const Scene>{other, false});
+bool Scene::isSameAs(const Scene& other) const {
+    // The rules have digests of the mesh of a TIN and of the ground.
+    return sameHeights(terrain, other.terrain) && base::encoded(Whole<const Scene>{*this, Content::settings}) ==
+                                                      base::encoded(Whole<const Scene>{other, Content::settings});
 }
 
 sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
@@ -133,7 +133,7 @@ sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
 Scene Scene::decode(std::span<const std::uint8_t> bytes, Keep keep, const std::function<void(std::size_t)>& decoded) {
     base::ByteReader reader(bytes);
     Scene scene;
-    base::getMember(reader, Whole<Scene>{scene, true, keep, decoded});
+    base::getMember(reader, Whole<Scene>{scene, Content::all, keep, decoded});
     return scene;
 }
 

@@ -57,9 +57,9 @@ struct Scene : sand::Start {
     /// Returns the whole scene as bytes, which the master broadcasts and with which the journal begins. The bytes name
     /// files without their folders.
     [[nodiscard]] base::Bytes encode() const;
-    /// Returns whether `bytes` are this scene. The statements do not count, because the same scene may be read by
-    /// another path, and journals of earlier builds have none.
-    [[nodiscard]] bool isEncodedAs(std::span<const std::uint8_t> bytes) const;
+    /// Returns whether both are the same scene. Statements, warnings and material do not count: the same scene may be
+    /// read by another path, and journals of earlier builds have no statements.
+    [[nodiscard]] bool isSameAs(const Scene& other) const;
     /// Reads what encode() wrote, except warnings and material. Throws base::FormatError for invalid bytes. Calls
     /// `decoded` as decodeSand() does.
     static Scene decode(std::span<const std::uint8_t> bytes, Keep keep = Keep::heights,

@@ -3,6 +3,7 @@
 
 import math
 import os
+import pathlib
 import re
 import shlex
 import socket
@@ -18,11 +19,11 @@ from job.rank_hosts import HERE
 LOOK_SECONDS = 0.1
 REACH_SECONDS = 45  # a login may wait 30 s for a name or a folder
 SILENT_SECONDS = 10  # after which the hosts that have not answered are named
-MEMORY = re.compile(r"(\d{1,15}) kB")
+FREE = re.compile(r"free (\d{1,18})")  # answer of `sandwall-check --free-memory` [byte]
 # Machines may have the same name. Each start of a machine has another boot id.
 QUESTIONS = (marked_answer.SAY + '; test -x {node} && echo "program yes"; '
              'echo "machine $(uname -n) $(cat /proc/sys/kernel/random/boot_id)"; '
-             'echo "memory $(sed -n "s/^MemAvailable: *//p" /proc/meminfo)"; mpirun --version 2>/dev/null | say mpi')
+             'echo "memory $({check} --free-memory 2>/dev/null)"; mpirun --version 2>/dev/null | say mpi')
 
 
 def identity_here():
@@ -39,6 +40,21 @@ def identity_of(words):
     """Returns the identity in a host's answer, or "" if it is something else than a name and a boot id."""
     found = words.split()
     return "/".join(found) if len(found) == 2 and len(words) < 400 else ""
+
+
+def check_beside(node):
+    """Returns the path of the program sandwall-check that was installed with the program `node`."""
+    return str(pathlib.Path(node).with_name("sandwall-check"))
+
+
+def free_here(check):
+    """Returns the memory that is free on this machine [byte], or None if the program `check` does not tell it."""
+    try:
+        found = FREE.fullmatch(subprocess.run([check, "--free-memory"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                              stderr=subprocess.DEVNULL, text=True, errors="replace").stdout.strip())
+    except OSError:
+        return None
+    return int(found[1]) if found else None
 
 
 class Answers:
@@ -72,7 +88,7 @@ def ask(hosts, node, version=None, stopped=lambda: False, say_silent=lambda host
             say_silent([host for host, process in zip(others, asked) if process.poll() is None])
         return not stopped() and time.monotonic() <= began + REACH_SECONDS
 
-    command = marked_answer.marked(QUESTIONS.replace("{node}", shlex.quote(node)))
+    command = marked_answer.marked(QUESTIONS.replace("{node}", shlex.quote(node)).replace("{check}", shlex.quote(check_beside(node))))
     try:
         for host in others:
             asked.append(subprocess.Popen([*agent, host, command], stdin=subprocess.DEVNULL,
@@ -83,8 +99,8 @@ def ask(hosts, node, version=None, stopped=lambda: False, say_silent=lambda host
             if complaint:
                 found.absent.add(host)
             found.identities[host] = identity_of(answers.get("machine", ""))
-            if memory := MEMORY.fullmatch(answers.get("memory", "")):
-                found.free[host] = 1024 * int(memory[1])
+            if memory := FREE.fullmatch(answers.get("memory", "")):
+                found.free[host] = int(memory[1])
             other = open_mpi.VERSION.search(answers.get("mpi", ""))
             if not complaint and version and other and other[1] != version:
                 complaint = f"has mpirun (Open MPI) {other[1]}, and this machine {version}; install the same version on every host"

@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks, before a session starts, that each of its hosts has the memory for the processes that it gets (docs/scenes.md)."""
 
-import pathlib
 import re
 import resource
 
 from base.bad_input import BadInput
 from job.rank_hosts import HERE
 
-MEMINFO, GROUP = pathlib.Path("/proc/meminfo"), pathlib.Path("/sys/fs/cgroup")
-AVAILABLE = re.compile(r"^MemAvailable:\s*(\d{1,15}) kB", re.MULTILINE)
-CACHED = re.compile(r"^inactive_file (\d{1,18})$", re.MULTILINE)
 # A line of `sandwall-check --memory`: the process, its bytes at rest, at the start and with all sand moving, and shared ones.
 LINE = re.compile(r"(server|master|[1-9]\d{0,5}) (\d{1,18}) (\d{1,18}) (\d{1,18}) (\d{1,18})")
 PROCESS = {"server": "haptic server", "master": "master", "rank": "rank"}
@@ -32,30 +28,6 @@ def needs_of(lines):
         figures = [int(number) for number in match.groups()[1:]]
         found[who] = Need(who if who in ("server", "master") else "rank", max(figures[:3]), figures[3])
     return found
-
-
-def free_here():
-    """Returns the memory that is free on this machine, or in this control group [byte], or None if it is not known."""
-    found = []
-    try:
-        if match := AVAILABLE.search(MEMINFO.read_text(encoding="ascii")):
-            found.append(1024 * int(match[1]))
-        most = (GROUP / "memory.max").read_text(encoding="ascii").strip()
-        if most.isdecimal():
-            used = int((GROUP / "memory.current").read_text(encoding="ascii"))
-            found.append(max(int(most) - used + memory_of_files(), 0))
-    except (OSError, ValueError):
-        pass  # no such limit
-    return min(found, default=None)
-
-
-def memory_of_files():
-    """Returns the memory of unused files in this control group [byte]. The system gives it back."""
-    try:
-        files = CACHED.search((GROUP / "memory.stat").read_text(encoding="ascii"))
-    except (OSError, ValueError):
-        return 0
-    return int(files[1]) if files else 0
 
 
 def in_words(number):

@@ -57,8 +57,11 @@ class SessionHosts:
 
     def require_memory(self, scene):
         """Throws BadInput if a machine lacks the memory for its processes. `scene` names what needs it."""
-        free = {**self.free, rank_hosts.HERE: session_memory.free_here()}
-        session_memory.require(scene, self.needs, self.names, free, self.identities)
+        session_memory.require(scene, self.needs, self.names, self.free_memory(), self.identities)
+
+    def free_memory(self):
+        """Returns the memory that is free on this machine now, and was free on every other host when it answered [byte]."""
+        return {**self.free, rank_hosts.HERE: reachable.free_here(reachable.check_beside(self.node))}
 
     def ask(self, hosts, print_line):
         """Returns the reachable.Answers of the hosts. Notes which machines they are. Names each host that is silent, once."""
@@ -90,7 +93,7 @@ class SessionHosts:
     def replace(self, host, why, print_line):
         """Replaces a host by the first spare that can be reached and has slots for all ranks of the host.
 
-        Returns whether there was such a spare.
+        Returns whether there was such a spare. A spare that lacks memory now stays a spare, because it may have it later.
         """
         ranks = [rank for rank, name in enumerate(self.names, start=1) if name == host]
         for spare, slots in list(self.spares):
@@ -101,7 +104,8 @@ class SessionHosts:
                 print_line(f"spare {spare} cannot be reached either")
                 continue
             names = [spare if name == host else name for name in self.names]
-            if lack := session_memory.lack_of(self.needs, names, self.free, self.identities, spare):
+            if lack := session_memory.lack_of(self.needs, names, self.free_memory(), self.identities, spare):
+                self.spares.append((spare, slots))
                 print_line(f"spare {spare} cannot take the place of {host}: {lack}")
                 continue
             self.names = names

@@ -12,7 +12,7 @@ from unittest import mock
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 from launcher_fixture import CHECK, LauncherTest
 from base.bad_input import BadInput
-from hosts import session_memory
+from hosts import reachable, session_memory
 from job.rank_hosts import HERE
 
 MIB = 2 ** 20
@@ -69,19 +69,14 @@ class Needs(unittest.TestCase):
         with mock.patch.object(resource, "getrlimit", return_value=(90 * MIB, 90 * MIB)):
             self.assertEqual(self.refusal([HERE, HERE], {}), "")
 
-    def test_the_limit_of_a_control_group_counts(self):
+    def test_a_host_tells_its_free_memory_by_its_program(self):
         with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            (folder / "meminfo").write_text("MemTotal: 9 kB\nMemAvailable:    2048 kB\n")
-            with mock.patch.object(session_memory, "MEMINFO", folder / "meminfo"), mock.patch.object(session_memory, "GROUP", folder):
-                self.assertEqual(session_memory.free_here(), 2 * MIB)
-                (folder / "memory.max").write_text("max\n")
-                self.assertEqual(session_memory.free_here(), 2 * MIB)
-                (folder / "memory.max").write_text(f"{3 * MIB}\n")
-                (folder / "memory.current").write_text(f"{2 * MIB}\n")
-                self.assertEqual(session_memory.free_here(), MIB)
-                (folder / "memory.stat").write_text(f"anon 1\ninactive_file {MIB // 2}\nactive_file 9\n")
-                self.assertEqual(session_memory.free_here(), MIB * 3 // 2)
+            check = pathlib.Path(name) / "sandwall-check"
+            self.assertIsNone(reachable.free_here(str(check)), "no program")
+            for said, free in (("free 4096", 4096), ("free -1", None), ("sandwall 1.0", None), ("", None)):
+                check.write_text(f"#!/bin/sh\n[ \"$*\" = --free-memory ] && echo '{said}'\n")
+                check.chmod(0o755)
+                self.assertEqual(reachable.free_here(str(check)), free, said)
 
 
 class Session(LauncherTest):
@@ -95,7 +90,8 @@ class Session(LauncherTest):
 
     def server_needs(self, number):
         """Makes the server need so many bytes, and keeps the question."""
-        answer = f'[ "$2" = --memory ] && {{ echo "$*" > "{self.folder}/asked"; echo "server 1 1 {number} 0"; echo "master 1 1 1 0"; echo "1 1 1 1 0"; exit; }}'
+        free = '[ "$1" = --free-memory ] && { echo "free 1000000"; exit; }'
+        answer = f'{free}\n[ "$2" = --memory ] && {{ echo "$*" > "{self.folder}/asked"; echo "server 1 1 {number} 0"; echo "master 1 1 1 0"; echo "1 1 1 1 0"; exit; }}'
         self.script("sandwall-check", CHECK.replace("\n", f"\n{answer}\n", 1))
 
     def test_that_does_not_fit_is_refused_before_mpirun_starts(self):

@@ -11,6 +11,7 @@ from unittest import mock
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 from supervisor_fixture import Supervised
 from hosts import reachable, session_memory
+from job.rank_hosts import HERE
 from watch.spare_hosts import SessionHosts
 
 
@@ -81,6 +82,15 @@ class SparesWithTooLittleMemory(unittest.TestCase):
         self.assertEqual(lines, ["spare small cannot take the place of n2: needs 0 MiB on small for 1 rank, where 0 MiB are free",
                                  "spare same cannot take the place of n2: needs 0 MiB on n1 for 2 ranks, where 0 MiB are free",
                                  "n2 is gone; spare large takes its place (rank 2)"])
+        self.assertEqual(hosts.spares, [("small", 1), ("same", 1)], "they may have the memory later")
+
+    def test_a_name_of_this_machine_is_a_spare_with_the_memory_of_this_machine(self):
+        hosts = SessionHosts(["n1"], [("me", 1)], "node", "4.1.4", needs=session_memory.needs_of("master 1 1 1 0\n1 50 60 70 0\n"))
+        hosts.identities = {HERE: "a/1", "me": "a/1", "n1": "b/2"}
+        hosts.free = {"n1": 500, "me": 500}
+        for free, taken in ((70, False), (71, True)):
+            with mock.patch.object(hosts, "ask", return_value=reachable.Answers()), mock.patch.object(reachable, "free_here", return_value=free):
+                self.assertEqual(hosts.replace("n1", "n1 is gone", lambda line: None), taken, free)
 
 
 if __name__ == "__main__":
