@@ -46,6 +46,8 @@ public:
     explicit ByteWriter(ByteSink& sink) : sink_(&sink) {}
     static constexpr std::size_t kPiece = std::size_t{1} << 20;  // [byte]
 
+    /// Takes the memory for `bytes` in all, so that it does not grow step by step.
+    void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
     /// Passes all bytes to the sink.
     void flush() {
         sink_->write(bytes_);

@@ -7,8 +7,8 @@
 
 namespace host {
 
-/// Returns the memory that the control groups of this process leave it [byte]: the least that its group, or a group
-/// around that one, has below its limit. Memory of unused files counts as free, because the system gives it back.
+/// Returns the memory that the control groups of this process leave it [byte]. Its own group counts, and each group
+/// around that one. Memory of unused files counts as free, because the system gives it back.
 /// Returns nullopt without a limit. Reads groups of version 1 and 2 (cgroups(7)), also of a container, which may see
 /// only a part of the groups.
 ///

@@ -16,8 +16,8 @@ JournalReader::JournalReader(std::unique_ptr<JournalParts> parts, std::string_vi
     place_.journal = parts_->name(1);
     try {
         open(1);
-        if (header_.part == 1) {  // a later part holds no scene
-            limits_ = scene::Scene::decodeRules(header_.scene).stepLimits();
+        if (header_->part == 1) {  // a later part holds no scene
+            limits_ = scene::Scene::decodeRules(header_->scene).stepLimits();
         }
     } catch (const HeaderLost& error) {
         fail(fmt::format("{}; it holds the scene as the session began, without which nothing can be recovered",
@@ -25,9 +25,22 @@ JournalReader::JournalReader(std::unique_ptr<JournalParts> parts, std::string_vi
     } catch (const base::FormatError& error) {
         throw base::InputError(fmt::format("{}: {}", place_.journal, error.what()));
     }
-    if (header_.part != 1) {
-        fail(fmt::format("is part {} of a session; name its first part", header_.part));
+    if (header_->part != 1) {
+        fail(fmt::format("is part {} of a session; name its first part", header_->part));
     }
+}
+
+JournalReader::JournalReader(std::unique_ptr<JournalParts> parts, const JournalReader& opened)
+    : parts_(std::move(parts)),
+      release_(opened.release_),
+      header_(opened.header_),
+      limits_(opened.limits_),
+      place_(opened.place_),
+      size_(parts_->length(1)) {
+    if (header_->part != 1 || size_ < place_.offset) {
+        throw base::InputError(fmt::format("{}: has changed since it was opened", place_.journal));
+    }
+    place_.seen = size_;
 }
 
 /// Reads the header of a part and sets `length` to its length [byte]. Throws base::FormatError.
@@ -60,8 +73,8 @@ void JournalReader::open(std::uint32_t part) {
     if (size_ == 0) {
         throw base::FormatError("is empty");
     }
-    header_ = readHeader(part, size_, place_.chain, place_.offset);
-    place_.session = header_.session;
+    header_ = std::make_shared<const JournalHeader>(readHeader(part, size_, place_.chain, place_.offset));
+    place_.session = header_->session;
     place_.part = part;
     place_.seen = size_;
 }
@@ -77,7 +90,7 @@ void JournalReader::openNext(std::uint32_t part) {
         throw base::InputError(fmt::format("{}: {}; the part before is intact", parts_->name(part), error.what()));
     }
     earlierBytes_ += before.offset;
-    if (header_.session != before.session || header_.part != part || header_.continues != before.chain) {
+    if (header_->session != before.session || header_->part != part || header_->continues != before.chain) {
         throw base::InputError(fmt::format("{}: does not continue {}; everything before is intact", parts_->name(part),
                                            shortName(before.part)));
     }
@@ -98,7 +111,7 @@ bool JournalReader::continues() {
         std::int64_t length = 0;
         const JournalHeader header = readHeader(part, size, chain, length);
         // A part that was made but not continued has only a header.
-        return header.session == header_.session && size > length;
+        return header.session == header_->session && size > length;
     } catch (const base::FormatError&) {
         return false;
     } catch (const base::InputError&) {

@@ -28,8 +28,12 @@ public:
     /// Throws base::InputError if the first part is missing, is not a journal, is a later part, has another format or
     /// algorithm, or has a damaged header. `release` is that of this program.
     JournalReader(std::unique_ptr<JournalParts> parts, std::string_view release);
+    /// Makes a reader of the same journal that begins again behind the header of its first part. It shares the header,
+    /// which has the scene. `opened` must not have returned a record yet. Throws base::InputError if the first part is
+    /// shorter now.
+    JournalReader(std::unique_ptr<JournalParts> parts, const JournalReader& opened);
 
-    [[nodiscard]] const JournalHeader& header() const { return header_; }
+    [[nodiscard]] const JournalHeader& header() const { return *header_; }
     /// Returns the next record; nullopt behind the last whole one. At the end of a part it continues with the next part
     /// and does not return the JournalContinued.
     ///
@@ -64,8 +68,8 @@ private:
 
     std::unique_ptr<JournalParts> parts_;
     std::string release_;
-    JournalHeader header_;
-    sand::StepLimits limits_;  // of the scene, which only the first part has
+    std::shared_ptr<const JournalHeader> header_;  // of the part that is read
+    sand::StepLimits limits_;                      // of the scene, which only the first part has
     JournalPlace place_;
     std::int64_t size_ = 0;  // [byte], length of the part
     std::int64_t earlierBytes_ = 0;

@@ -4,12 +4,24 @@
 #include "lockstep/frame_barrier.hpp"
 
 namespace lockstep {
+namespace {
 
-std::optional<SessionMessage> broadcastSession(const Cluster& cluster, const std::optional<SessionMessage>& fromMaster,
+/// Returns the bytes of a message. Takes the memory for them at once: the scene and the state may have gigabytes.
+base::Bytes encodedOnce(const SessionMessage& message) {
+    constexpr std::size_t kRest = 1 << 16;  // [byte], a usual size of the other fields
+    base::ByteWriter writer;
+    writer.reserve(message.scene.size() + message.state.size() + message.wall.size() + kRest);
+    base::putMember(writer, message);
+    return writer.take();
+}
+
+}  // namespace
+
+std::optional<SessionMessage> broadcastSession(const Cluster& cluster, const SessionMessage* fromMaster,
                                                const std::function<void(double)>& sent) {
     cluster.mayTakeLong(true);
     cluster.awaitBroadcast();
-    const base::Bytes bytes = cluster.broadcast(fromMaster ? base::encoded(*fromMaster) : base::Bytes{}, sent);
+    const base::Bytes bytes = cluster.broadcast(fromMaster != nullptr ? encodedOnce(*fromMaster) : base::Bytes{}, sent);
     cluster.mayTakeLong(false);
     if (bytes.empty()) {
         return std::nullopt;

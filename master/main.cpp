@@ -81,8 +81,10 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
         options.session.executor = pool->lend();
         world.emplace(master::loadWorld(cluster, options));
         setLastWords(cluster, options, &world->wall);
-        (void)lockstep::broadcastSession(cluster, world->message, printed("broadcast", "sends the scene to the ranks"));
+        (void)lockstep::broadcastSession(cluster, &world->message,
+                                         printed("broadcast", "sends the scene to the ranks"));
         sessionOpen = true;
+        world->message = {};
         std::exception_ptr failed;
         try {
             sand.emplace(master::sandOf(options.session, world->scene));  // while the ranks make theirs
@@ -105,7 +107,7 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
         if (sessionOpen) {
             (void)lockstep::agreeToGoOn(cluster, false);
         } else {
-            (void)lockstep::broadcastSession(cluster, std::nullopt);
+            (void)lockstep::broadcastSession(cluster, nullptr);
         }
         throw;
     }
@@ -114,7 +116,6 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
     try {
         master::Session session(cluster, world->scene, world->wall, options.session, std::move(*sand));
         world->scene.dropHeights();
-        world->message = {};
         const int status = session.run();
         last = session.takeUnfinished();
         return status;
@@ -136,7 +137,7 @@ int runJob(host::CommandLine& line, int argc, char** argv, master::ProgramOption
         return runSession(cluster, options, last);
     });
     if (!parsed) {
-        (void)lockstep::broadcastSession(cluster, std::nullopt);
+        (void)lockstep::broadcastSession(cluster, nullptr);
     }
     return status;
 }

@@ -63,14 +63,14 @@ void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, const s
     }
 }
 
-void requireMemoryOfJournal(const MemoryUse& use, const std::filesystem::path& journal) {
-    const journal::JournalReader reader = openJournal(journal);
+void requireMemoryOfJournal(const MemoryUse& use, const journal::JournalReader& reader) {
+    const std::string& journal = reader.place().journal;
     const scene::SandSize size = sizeOf(journal::rulesOf(reader));
     if (size.field.bytesOfReplica()) {
-        requireMemory(use, size, journal.string());
-        requireMasterFits(use, size, journal.string());
+        requireMemory(use, size, journal);
+        requireMasterFits(use, size, journal);
     } else {
-        requireMemory(use, journal::sceneOf(reader), journal.string());
+        requireMemory(use, journal::sceneOf(reader), journal);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "journal/reader.hpp"
 #include "lockstep/cluster.hpp"
 #include "lockstep/session_message.hpp"
 #include "scene/import/raster_check.hpp"
@@ -34,9 +35,8 @@ void requireMemory(const MemoryUse& use, const scene::Scene& scene, const std::s
 /// Checks the memory for the pixels of a raster file before they are read. Only the master holds them.
 void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, const scene::RasterSize& size,
                            const std::string& file);
-/// Checks the memory for the sand of a journal before it is made. Also throws base::InputError if the journal cannot be
-/// read.
-void requireMemoryOfJournal(const MemoryUse& use, const std::filesystem::path& journal);
+/// Checks the memory for the sand of a journal before it is made. `reader` may have returned records.
+void requireMemoryOfJournal(const MemoryUse& use, const journal::JournalReader& reader);
 /// Throws base::InputError if the master itself may not take the memory for this sand, because it has a limit
 /// (ulimit -v).
 void requireMasterFits(const MemoryUse& use, const scene::SandSize& sand, const std::string& file);

@@ -62,15 +62,13 @@ std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, const Memor
     if (options.session.record.journal.policy == JournalPolicy::off) {
         throw base::InputError("--resume needs the journal of the session; leave out --journal off");
     }
-    if (std::error_code none; std::filesystem::exists(std::filesystem::symlink_status(journal, none))) {
-        requireMemoryOfJournal(use, journal);
-    }
-    std::optional<ResumedSession> resumed =
-        readSession(journal, options.scene,
-                    {.scene = told(cluster, "read", "reads the scene", "the reading of its scene"),
-                     .read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
-                     .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")},
-                    options.session.executor);
+    std::optional<ResumedSession> resumed = readSession(
+        journal, options.scene,
+        {.progress = {.scene = told(cluster, "read", "reads the scene", "the reading of its scene"),
+                      .read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
+                      .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")},
+         .executor = options.session.executor,
+         .check = [&](const journal::JournalReader& reader) { requireMemoryOfJournal(use, reader); }});
     cluster.progressEnds();
     if (!resumed) {
         host::printLine("{}: nothing to resume; the session begins", journal.string());
@@ -141,7 +139,7 @@ scene::Scene openRecording(const MemoryUse& use, ProgramOptions& options) {
         throw base::InputError(
             fmt::format("{}: holds a session, whose results would be lost; choose another --out", options.out));
     }
-    requireMemoryOfJournal(use, options.replay);
+    requireMemoryOfJournal(use, openJournal(options.replay));
     SessionOptions& session = options.session;
     session.recording = std::make_shared<const journal::Recording>(readJournal(options.replay), options.replay,
                                                                    options.framesPerSecond);

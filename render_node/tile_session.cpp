@@ -316,7 +316,7 @@ private:
 }  // namespace
 
 int showTile(const lockstep::Cluster& cluster, Backend backend, const base::Executor* executor) {
-    std::optional<lockstep::SessionMessage> message = lockstep::broadcastSession(cluster, std::nullopt);
+    std::optional<lockstep::SessionMessage> message = lockstep::broadcastSession(cluster, nullptr);
     if (!message) {
         return 0;  // the master has printed the reason
     }

@@ -34,6 +34,10 @@ journal::JournalReader openJournal(const fs::path& journal) {
     return {std::make_unique<FileParts>(journal), host::release()};
 }
 
+journal::JournalReader openAgain(const fs::path& journal, const journal::JournalReader& opened) {
+    return {std::make_unique<FileParts>(journal), opened};
+}
+
 journal::Journal readJournal(const fs::path& file) {
     journal::JournalReader reader = openJournal(file);
     return journal::readAll(reader);

@@ -17,6 +17,10 @@ namespace master {
 
 /// Returns a reader of the journal in the file `journal` and of its parts beside it. Throws as its constructor does.
 [[nodiscard]] journal::JournalReader openJournal(const std::filesystem::path& journal);
+/// Returns a further reader of the journal that `opened` reads. It shares the header, which is large for a large field.
+/// Throws as the constructor of the reader does.
+[[nodiscard]] journal::JournalReader openAgain(const std::filesystem::path& journal,
+                                               const journal::JournalReader& opened);
 /// Reads a whole journal. Throws base::InputError if the file is missing, is not a journal, has another format or
 /// algorithm, or is damaged before its end. Also throws if one of its parts is missing.
 [[nodiscard]] journal::Journal readJournal(const std::filesystem::path& file);

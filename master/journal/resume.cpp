@@ -54,7 +54,8 @@ public:
           bytes_(how.progress ? static_cast<double>(allBytes(journal)) : 0) {}
 
     void run() {
-        journal::JournalReader reader = openJournal(journal_);
+        journal::JournalReader reader =
+            how_.opened != nullptr ? openAgain(journal_, *how_.opened) : openJournal(journal_);
         reader_ = &reader;
         while (!(how_.beingWritten && replica_.stepNumber() >= step_) && !beyond_) {
             const auto record = reader.next();
@@ -211,9 +212,13 @@ void replayFurther(const fs::path& journal, std::uint64_t step, RestoredSand& re
 }
 
 RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Restoring& how) {
-    const journal::JournalReader head = openJournal(journal);
-    const sand::Replica start = how.start != nullptr ? sand::Replica(*how.start, how.executor)
-                                                     : sand::Replica(journal::sceneOf(head), how.executor);
+    const std::optional<journal::JournalReader> own =
+        how.opened != nullptr ? std::nullopt : std::optional(openJournal(journal));
+    Restoring with = how;
+    with.opened = own ? &*own : how.opened;
+    const journal::JournalReader& head = *with.opened;
+    sand::Replica start = how.start != nullptr ? sand::Replica(*how.start, how.executor)
+                                               : sand::Replica(journal::sceneOf(head), how.executor);
     const std::int64_t volume = start.volume() + start.outflow();
     for (const std::uint64_t at : checkpointsOf(journal)) {
         if (at > std::min(step, how.newestCheckpoint)) {
@@ -226,7 +231,7 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
         }
         try {
             RestoredSand restored{std::move(*replica), at, 0, volume, {}};
-            replayFurther(journal, step, restored, how);
+            replayFurther(journal, step, restored, with);
             return restored;
         } catch (const OtherSand& error) {
             host::printLine("{}: it is left out: {}", file.string(), error.what());
@@ -235,18 +240,22 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
             }
         }
     }
-    RestoredSand restored{start, 0, 0, volume, {}};
-    replayFurther(journal, step, restored, how);
+    RestoredSand restored{std::move(start), 0, 0, volume, {}};
+    replayFurther(journal, step, restored, with);
     return restored;
 }
 
-std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene,
-                                          const ResumeProgress& progress, const base::Executor* executor) {
+std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene, const Resuming& how) {
+    const ResumeProgress& progress = how.progress;
     std::error_code none;
     if (!fs::exists(fs::symlink_status(journal, none))) {
         return std::nullopt;
     }
-    journal::JournalReader reader = openJournal(journal);
+    const journal::JournalReader opened = openJournal(journal);
+    if (how.check) {
+        how.check(opened);
+    }
+    journal::JournalReader reader = openAgain(journal, opened);
     SceneCheck check(scene, sand::FieldSize::of(journal::rulesOf(reader)), reader.place().journal);
     ResumedSession session;
     session.scene = journal::sceneOf(reader, scene::Scene::Keep::packedToo);
@@ -273,8 +282,9 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     session.place = reader.place();
     session.cutBytes = reader.tornBytes();
     RestoredSand restored = restoreSand(journal, session.step,
-                                        {.executor = executor,
+                                        {.executor = how.executor,
                                          .start = &session.scene,
+                                         .opened = &opened,
                                          .newestCheckpoint = newestCheckpointFor(walk.doubted),
                                          .progress = progress.replayed});
     session.outvoted = restored.outvoted;

@@ -35,6 +35,7 @@ struct RestoredSand {
 struct Restoring {
     const base::Executor* executor = nullptr;  // see sand::Replica
     const sand::Start* start = nullptr;  // of the journal's session; null: restoreSand() reads it from the journal
+    const journal::JournalReader* opened = nullptr;  // of the journal, before its first record; null: it is opened
     // Uses no checkpoint of a later step.
     std::uint64_t newestCheckpoint = std::numeric_limits<std::uint64_t>::max();
     // Another thread writes the journal. So nothing behind the wanted step is read, because it may be half written.
@@ -94,11 +95,18 @@ struct ResumeProgress {
     std::function<void(double)> replayed{};  // replaying the steps of the journal
 };
 
+/// Options of readSession().
+struct Resuming {
+    ResumeProgress progress{};
+    const base::Executor* executor = nullptr;  // for the replica
+    /// Called with the journal before its scene is decoded. It throws if the scene does not fit.
+    std::function<void(const journal::JournalReader&)> check{};
+};
+
 /// Reads the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
 /// is named, it must describe the session's scene. Throws base::InputError if the session cannot be continued; the text
-/// says what can be done with the journal. `executor` is for the replica.
+/// says what can be done with the journal.
 [[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
-                                                        const ResumeProgress& progress = {},
-                                                        const base::Executor* executor = nullptr);
+                                                        const Resuming& how = {});
 
 }  // namespace master

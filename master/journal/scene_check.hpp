@@ -12,7 +12,7 @@
 namespace master {
 
 /// Compares the scene in a file with the scene of a journal. A thread of its own reads the file, so that the caller can
-/// decode the journal at the same time: both take seconds for a large raster.
+/// decode the journal at the same time. Both take seconds for a large raster.
 ///
 /// The constructor returns at once. The destructor waits for the thread. Used by one thread.
 class SceneCheck {

@@ -74,6 +74,7 @@ void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
         host::printLine("haptic link: {}; the wall continues without a hand", why);
     }
     source_ = Source::own;
+    givenState_.drop();
     ++epoch_;
     if (!reason.empty()) {
         host::emitEvent("without_hand", {{"reason", reason}, {"epoch", epoch_}});
@@ -84,8 +85,18 @@ void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
 void LiveSteps::grant(const sand::Replica& replica, std::uint64_t stateHash) {
     ++epoch_;
     link_.client()->grant(epoch_, replica.stepNumber(), stateHash, recent_);
+    givenState_.drop();
+    grantWait_ = kGrantWait;
     source_ = Source::granting;
     waitingSinceNs_ = now_();
+}
+
+void LiveSteps::giveState(const sand::Replica& replica) {
+    waitingSinceNs_ = now_();
+    if (std::optional<base::Bytes> state = givenState_.next(replica)) {
+        grantWait_ = kGrantWait + static_cast<double>(state->size()) / kLeastStateRate;
+        link_.client()->giveState(std::move(*state));
+    }
 }
 
 void LiveSteps::followLink(const sand::Replica& replica, std::uint64_t stateHash) {
@@ -117,8 +128,7 @@ void LiveSteps::followLink(const sand::Replica& replica, std::uint64_t stateHash
     } else if (link == Link::offered) {
         grant(replica, stateHash);
     } else if (link_.client()->needsState()) {
-        link_.client()->giveState(replica.encodeState());
-        waitingSinceNs_ = now_();
+        giveState(replica);
     } else {
         waitForLink(link);
     }
@@ -127,9 +137,9 @@ void LiveSteps::followLink(const sand::Replica& replica, std::uint64_t stateHash
 void LiveSteps::waitForLink(Link link) {
     const std::string server = link_.address();
     if (source_ == Source::granting && link == Link::granting) {
-        if (secondsSince(waitingSinceNs_) > kGrantWait) {
+        if (secondsSince(waitingSinceNs_) > grantWait_) {
             // For kRetryWait, because each try stops the sand.
-            link_.leave(fmt::format("it does not begin within {:.0f} s", kGrantWait));
+            link_.leave(fmt::format("it does not begin within {:.0f} s", grantWait_));
             waitingSinceNs_ = now_();
             takeOver("server_does_not_begin", fmt::format("{} does not begin", server));
         }

@@ -11,6 +11,7 @@
 #include "haptic_bridge/hand/sweep_budget.hpp"
 #include "lockstep/fault.hpp"
 #include "master/steps/edits.hpp"
+#include "master/steps/given_state.hpp"
 #include "master/steps/own_steps.hpp"
 #include "master/steps/server_link.hpp"
 #include "master/steps/step_source.hpp"
@@ -26,7 +27,7 @@ namespace master {
 /// Each change begins a new epoch. Main thread only.
 ///
 /// There are three times without steps: at the start, at most kStartWait after the last progress of a server that reads
-/// its scene; while a server takes over, at most kGrantWait, and as long again if it needs the whole sand; and while
+/// its scene; while a server takes over, at most kGrantWait, and longer if it needs the whole sand; and while
 /// the master numbers the steps and nothing moves (OwnSteps::rests()).
 class LiveSteps : public StepSource, public ForceControl {
 public:
@@ -36,6 +37,8 @@ public:
     static constexpr double kLoadingWait = haptic_bridge::kLoadingNs * 1e-9;
     /// Time within which a server must begin to number the steps when the master has asked it to [s].
     static constexpr double kGrantWait = 5;
+    /// A server that gets the whole sand has one second more for each so many bytes: it receives and decodes them.
+    static constexpr double kLeastStateRate = 4e6;
     static constexpr double kRetryWait = 30;  // [s] until the master asks such a server again
 
     /// `edits` must outlive this object. Each of them becomes part of a step that next() returns, in their order.
@@ -94,6 +97,8 @@ private:
     /// Follows a link that is neither linked, streaming nor offered.
     void waitForLink(haptic_bridge::Link link);
     void grant(const sand::Replica& replica, std::uint64_t stateHash);
+    /// Gives the whole sand to a server that has asked for it. Call it once a frame until it is given.
+    void giveState(const sand::Replica& replica);
     /// Lets the master number the steps in a new epoch. `reason` is a name for programs, `why` a text for the user;
     /// both are empty if no link was lost.
     void takeOver(const std::string& reason = "", const std::string& why = "");
@@ -107,14 +112,16 @@ private:
     Edits& edits_;
     haptic_bridge::SweepBudget budget_;
     haptic_bridge::StepRing recent_;
+    GivenState givenState_;
     haptic_bridge::Pace pace_;
     Source source_;
     std::uint32_t epoch_;
-    std::int64_t progressNs_ = 0;   // [ns], time at which loadedMost_ has grown; 0: no server has read its scene
-    std::uint32_t loadedMost_ = 0;  // most that a server has read of its scene, of haptic_bridge::Loading::kAll
-    std::int64_t waitingSinceNs_;   // [ns], since when the master waits for the server
-    std::uint64_t linksNoted_ = 0;  // number of the link whose last report noteLastReport() has judged
-    bool memoryChanged_ = false;    // a server has reported it, and proveServer() has not returned it yet
+    std::int64_t progressNs_ = 0;    // [ns], time at which loadedMost_ has grown; 0: no server has read its scene
+    std::uint32_t loadedMost_ = 0;   // most that a server has read of its scene, of haptic_bridge::Loading::kAll
+    double grantWait_ = kGrantWait;  // [s], for the server that is granted now
+    std::int64_t waitingSinceNs_;    // [ns], since when the master waits for the server
+    std::uint64_t linksNoted_ = 0;   // number of the link whose last report noteLastReport() has judged
+    bool memoryChanged_ = false;     // a server has reported it, and proveServer() has not returned it yet
     bool serverUnhealed_ = false;
     std::optional<bool> serverAtEnd_;
 };

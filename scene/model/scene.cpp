@@ -117,7 +117,13 @@ struct Whole {
 
 }  // namespace
 
-base::Bytes Scene::encode() const { return base::encoded(Whole<const Scene>{*this}); }
+base::Bytes Scene::encode() const {
+    constexpr std::size_t kRest = 1 << 16;  // [byte], a usual size of all but the heights
+    base::ByteWriter writer;
+    writer.reserve((packed != nullptr ? packed->size() : 0) + kRest);
+    base::putMember(writer, Whole<const Scene>{*this});
+    return writer.take();
+}
 
 bool Scene::isSameAs(const Scene& other) const {
     // The rules have digests of the mesh of a TIN and of the ground.

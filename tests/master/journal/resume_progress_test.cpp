@@ -4,8 +4,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
 
+#include "base/input_error.hpp"
+#include "master/journal/journal.hpp"
+#include "master/journal/resume.hpp"
+#include "scene/load/scene_file.hpp"
 #include "tests/master/journal/resume_fixture.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace {
 
@@ -14,9 +22,10 @@ using test::Resume;
 TEST_F(Resume, TellsHowMuchOfTheJournalIsReadAndReplayed) {
     std::filesystem::remove_all(folder_ / "checkpoints");
     std::vector<double> read, replayed;
-    const auto session = master::readSession(journal(), "",
-                                             {.read = [&](double share) { read.push_back(share); },
-                                              .replayed = [&](double share) { replayed.push_back(share); }});
+    const auto session =
+        master::readSession(journal(), "",
+                            {.progress = {.read = [&](double share) { read.push_back(share); },
+                                          .replayed = [&](double share) { replayed.push_back(share); }}});
     EXPECT_EQ(session->replayedSteps, 40U);
     EXPECT_EQ(read.size(), 20U + 1) << "of each record, and at the end";
     EXPECT_GE(replayed.size(), 40U) << "of each step";
@@ -42,7 +51,7 @@ TEST_F(Resume, TellsThatTheReplayBeginsAgainFromAnEarlierCheckpoint) {
     }
     std::vector<double> shares;
     const auto resumed =
-        master::readSession(journal(), "", {.replayed = [&](double share) { shares.push_back(share); }});
+        master::readSession(journal(), "", {.progress = {.replayed = [&](double share) { shares.push_back(share); }}});
     EXPECT_EQ(resumed->hash, hashes_[40]);
     EXPECT_EQ(resumed->checkpointStep, 30U);
     int begun = 1;
@@ -51,6 +60,54 @@ TEST_F(Resume, TellsThatTheReplayBeginsAgainFromAnEarlierCheckpoint) {
     }
     EXPECT_EQ(begun, 2);
     EXPECT_EQ(shares.back(), 1);
+}
+
+TEST_F(Resume, ComparesTheNamedSceneWithTheJournalsAndTellsTheProgress) {
+    const std::filesystem::path file = folder_ / "scene.toml", other = folder_ / "other" / "session.journal";
+    std::ofstream(file) << "name = \"other\"\n[field]\ncolumns = 40\nrows = 30\n[terrain]\n[material]\n";
+    std::filesystem::create_directories(other.parent_path());
+    { master::JournalWriter writer(other, scene::loadScene(file), "test"); }
+    std::vector<double> shares;
+    const master::ResumeProgress progress{.scene = [&](double share) { shares.push_back(share); }};
+    EXPECT_TRUE(master::readSession(other, file.string(), {.progress = progress}).has_value());
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_EQ(shares.back(), 1);
+    shares.clear();
+    EXPECT_TRUE(master::readSession(other, "", {.progress = progress}).has_value());
+    EXPECT_EQ(shares.size(), 0U) << "no scene is named";
+}
+
+TEST_F(Resume, ChecksTheMemoryBeforeTheSceneIsDecoded) {
+    std::string checked;
+    const auto check = [&](const journal::JournalReader& reader) {
+        checked = reader.place().journal;
+        throw base::InputError("too large");
+    };
+    EXPECT_EQ(test::refusalOf([&] { (void)master::readSession(journal(), "missing.toml", {.check = check}); }),
+              "too large");
+    EXPECT_EQ(checked, journal().string());
+}
+
+TEST_F(Resume, AJournalThatIsOpenedAgainBeginsAfterItsHeader) {
+    const journal::JournalReader opened = master::openJournal(journal());
+    const auto records = [](journal::JournalReader reader) {
+        int count = 0;
+        while (reader.next()) {
+            ++count;
+        }
+        return count;
+    };
+    const int all = records(master::openJournal(journal()));
+    EXPECT_GE(all, 20);
+    for (int time = 0; time < 2; ++time) {
+        journal::JournalReader again = master::openAgain(journal(), opened);
+        EXPECT_EQ(&again.header(), &opened.header()) << "shares the header";
+        EXPECT_EQ(again.place().session, opened.place().session);
+        EXPECT_EQ(records(std::move(again)), all);
+    }
+    std::filesystem::resize_file(journal(), static_cast<std::uintmax_t>(opened.place().offset - 1));
+    EXPECT_EQ(test::refusalOf([&] { (void)master::openAgain(journal(), opened); }),
+              journal().string() + ": has changed since it was opened");
 }
 
 }  // namespace

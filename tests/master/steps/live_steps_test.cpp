@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <random>
 #include <thread>
 
 #include "tests/master/steps/live_steps_fixture.hpp"
@@ -243,6 +244,39 @@ TEST_F(LiveStepsTest, AServerThatDoesNotBeginIsPassedOverAfterFiveSecondsAndAske
     EXPECT_EQ(server.connections(), 1);
     pass(0.04);
     EXPECT_TRUE(showUntil(live, [&] { return server.connections() == 2; }));
+}
+
+// A state of 4 MB has one second more.
+TEST_F(LiveStepsTest, AServerThatGetsTheWholeSandHasTimeForItsBytes) {
+    scene::Scene rough = samples::flatScene(1000, 1000);
+    std::mt19937 random(1);
+    for (int row = 0; row < 1000; ++row) {
+        for (int column = 0; column < 1000; ++column) {
+            rough.terrain.setHeight(column, row, static_cast<std::int32_t>(random() % 1'000'000));
+        }
+    }
+    wall_ = sand::Replica(rough);
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (connection.await<haptic_bridge::Hello>()) {
+            connection.send(haptic_bridge::Welcome{
+                {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, rough.rules.digest(), rough.name}, 60});
+            if (connection.await<haptic_bridge::StartMessage>()) {
+                connection.send(haptic_bridge::NeedState{});
+            }
+            connection.ignoreTheRest();
+        }
+    });
+    master::LiveSteps live{
+        server.address(), rough, asked_, haptic_bridge::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
+    ASSERT_TRUE(showUntil(live, [&] { return live.counters().snapshots == 1; }));
+    const double seconds = 5 + static_cast<double>(wall_.encodeState().size()) / 4e6;
+    ASSERT_GT(seconds, 5.5);
+    pass(seconds - 0.01);
+    EXPECT_TRUE(show(live).empty());
+    EXPECT_EQ(live.epoch(), 1U) << "the server still has time";
+    pass(0.02);
+    show(live);
+    EXPECT_EQ(live.epoch(), 2U);
 }
 
 // The pauses before the next four links are 0.1, 0.2, 0.4 and 0.8 s. Without longer pauses four links take 0.4 s. A
