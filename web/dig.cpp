@@ -10,6 +10,7 @@
 #include "base/input_error.hpp"
 #include "web/exported.hpp"
 #include "web/hand/grid_scene.hpp"
+#include "web/hand/notches.hpp"
 #include "web/replica/opening.hpp"
 #include "web/words.hpp"
 
@@ -144,6 +145,20 @@ API int sw_set_material(const char* word, double value) {
 API int sw_set_tool(const char* part, const char* value) {
     return digs.guarded([=] {
         digs.dug->setTool(web::toolChange(part, value));
+        return 0;
+    });
+}
+/// Changes the tool or the material by notches, as web::changeByNotches() says.
+API int sw_change_by_notches(const char* what, double notches) {
+    return digs.guarded([=] {
+        web::changeByNotches(*digs.dug, what, notches);
+        return 0;
+    });
+}
+/// Gives a tool that is too small to be seen the usual size of the field.
+API int sw_enlarge_tool() {
+    return digs.guarded([] {
+        web::enlargeTool(*digs.dug);
         return 0;
     });
 }

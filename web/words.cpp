@@ -7,6 +7,7 @@
 
 #include "base/input_error.hpp"
 #include "base/number.hpp"
+#include "haptic_bridge/hand/tool_keys.hpp"
 #include "web/replica/json_text.hpp"
 
 namespace web {
@@ -56,6 +57,16 @@ struct NumberWord {
     }
 };
 
+struct DepthWords {
+    template <class Self, class Visit>
+    static void fields(Self& /*it*/, Visit& visit) {
+        visit("lowest", haptic_bridge::kShallowest);
+        visit("highest", haptic_bridge::kDeepest);
+        visit("usual", haptic_bridge::kUsualDepth);
+        visit("notch", haptic_bridge::kDepthPerNotch);
+    }
+};
+
 struct Words {
     std::vector<std::string_view> tools{}, edits{};
     std::vector<NumberWord> material{};
@@ -64,6 +75,7 @@ struct Words {
         visit("tools", it.tools);
         visit("material", it.material);
         visit("edits", it.edits);
+        visit("depth", DepthWords{});
     }
 };
 

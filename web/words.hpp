@@ -12,7 +12,7 @@
 namespace web {
 
 /// Returns what a hand can choose, as JSON. `tools` and `edits`: names. `material`: each number by its `word`, with its
-/// limits.
+/// limits. `depth`: limits, usual value and notch of the tool's depth [tool radius].
 [[nodiscard]] std::string wordsOfPage();
 /// Returns a material as JSON. `material`: each number by its word. `tool`: each part that it has by its name.
 [[nodiscard]] std::string materialText(const scene::Material& material);

@@ -6,6 +6,12 @@
 namespace master {
 namespace {
 
+using haptic_bridge::kDeepest;
+using haptic_bridge::kMoreHumidity;
+using haptic_bridge::kShallowest;
+using haptic_bridge::kTurnDegrees;
+using haptic_bridge::moistened;
+using haptic_bridge::turned;
 using lockstep::KeyAction;
 using lockstep::Overlay;
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "haptic_bridge/hand/tool_keys.hpp"
 #include "lockstep/key_list.hpp"
 #include "lockstep/overlays.hpp"
 #include "lockstep/test_pattern.hpp"
-#include "master/operator/tool_keys.hpp"
 #include "scene/model/material.hpp"
 
 namespace master {
@@ -25,7 +25,7 @@ inline constexpr const char* kNoSuchKey = "this key does nothing; F1 shows all k
 struct KeyState {
     scene::Material material{};  // with all changes that operators have asked for
     scene::Material ofScene{};   // as the scene file has it
-    ToolLimits limits{};
+    haptic_bridge::ToolLimits limits{};
     lockstep::Overlays layers{};
     lockstep::Pattern pattern{};
     bool paused = false;

@@ -16,7 +16,7 @@ namespace master {
 WindowDesk::WindowDesk(const scene::Scene& scene, std::filesystem::path out, bool pointer, Desk desk)
     : desk_(std::move(desk)),
       sceneMaterial_(scene.material),
-      toolLimits_(ToolLimits::of(scene)),
+      toolLimits_(haptic_bridge::ToolLimits::of(scene)),
       out_(std::move(out)),
       pointer_(pointer) {}
 
@@ -67,7 +67,7 @@ void WindowDesk::obey(const lockstep::KeyFound& found, int rank) {
         answer(rank, kFixedSize);
         return;
     } else if (action == KeyAction::sceneTool) {
-        depth_ = kUsualDepth;
+        depth_ = haptic_bridge::kUsualDepth;
     }
     try {
         for (const std::string& command : commandsOf(found, keyState(action == KeyAction::save))) {
@@ -117,7 +117,7 @@ void WindowDesk::turnWheels(std::span<const haptic_bridge::PointerReport> pointe
     for (std::size_t rank = 0; rank < pointers.size(); ++rank) {
         const haptic_bridge::PointerReport& pointer = pointers[rank];
         if (pointer.depth != 0) {
-            depth_ = deepened(depth_, static_cast<double>(pointer.depth));
+            depth_ = haptic_bridge::deepened(depth_, static_cast<double>(pointer.depth));
             answer(static_cast<int>(rank), depthInWords(depth_));
         }
         if (pointer.size != 0) {

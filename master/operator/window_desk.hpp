@@ -69,14 +69,14 @@ private:
 
     const Desk desk_;
     const scene::Material sceneMaterial_;  // as the scene file has it
-    const ToolLimits toolLimits_;
+    const haptic_bridge::ToolLimits toolLimits_;
     const std::filesystem::path out_;
     const bool pointer_;
     Answers answers_;
-    bool hinted_ = false;                  // whether the hint was shown
-    double depth_ = kUsualDepth;           // of the pointer's tool [tool radius]
-    std::optional<std::int64_t> askedNs_;  // when a person was last asked whether the session ends
-    int savesByKey_ = 0;                   // number of the last file that a key has asked for
+    bool hinted_ = false;                        // whether the hint was shown
+    double depth_ = haptic_bridge::kUsualDepth;  // of the pointer's tool [tool radius]
+    std::optional<std::int64_t> askedNs_;        // when a person was last asked whether the session ends
+    int savesByKey_ = 0;                         // number of the last file that a key has asked for
 };
 
 }  // namespace master

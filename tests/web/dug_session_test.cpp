@@ -13,6 +13,7 @@
 #include "journal/memory_writer.hpp"
 #include "journal/verification.hpp"
 #include "tests/support/sand/sand_samples.hpp"
+#include "web/hand/notches.hpp"
 
 namespace {
 
@@ -295,6 +296,39 @@ TEST_F(Dug, LiftsAToolThatHoversToTheHeightForItsNewSize) {
     advance(3);
     EXPECT_EQ(session_->replica().tool().radius, 10 * sand::kProbePerCell);
     EXPECT_NEAR(above(), haptic_bridge::PointerHand::kHover, 0.01);
+}
+
+// The page has no rules of its own for keys and the wheel.
+TEST_F(Dug, ChangesToolAndHumidityByNotchesAsAWindowDoes) {
+    const double cell = session_->scene().terrain.cellSize();
+    const auto radius = [&] { return session_->material().toolRadius / cell; };
+    session_->setTool({.radius = 2 * cell});
+    web::changeByNotches(*session_, "size", 1);
+    EXPECT_DOUBLE_EQ(radius(), 2.5);
+    web::changeByNotches(*session_, "size", -2);
+    EXPECT_DOUBLE_EQ(radius(), 1.6) << "the press before counts, although no step has come";
+    web::changeByNotches(*session_, "size", 100);
+    EXPECT_DOUBLE_EQ(radius(), 8) << "a quarter of 64 cells long";
+    web::changeByNotches(*session_, "size", -100);
+    EXPECT_DOUBLE_EQ(radius(), 1);
+    web::enlargeTool(*session_);
+    EXPECT_DOUBLE_EQ(radius(), 2) << "1/40 of 64 cells is less than two";
+    session_->setTool({.radius = 5 * cell});
+    web::enlargeTool(*session_);
+    EXPECT_DOUBLE_EQ(radius(), 5);
+
+    const double heading = session_->material().toolHeading;
+    web::changeByNotches(*session_, "heading", 1);
+    EXPECT_EQ(session_->material().toolHeading, heading) << "a sphere has none";
+    advance(10);
+    session_->setTool({.kind = sand::ToolKind::ellipse, .heading = 358});
+    web::changeByNotches(*session_, "heading", 1);
+    EXPECT_EQ(session_->material().toolHeading, 3);
+    for (int i = 0; i < 3; ++i) {
+        web::changeByNotches(*session_, "humidity", 1);
+    }
+    EXPECT_EQ(session_->material().humidity, 0.3);
+    EXPECT_THROW(web::changeByNotches(*session_, "weight", 1), base::InputError);
 }
 
 TEST_F(Dug, SaysWhenASettleComesNext) {

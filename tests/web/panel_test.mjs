@@ -21,6 +21,8 @@ class Control {
         this.options = options;
         this.value = options[0].value;
     }
+    setAttribute(name, text) { this[name] = text; }
+    get valueAsNumber() { return Number(this.value); }
     before(control) { elements.set(control.id, control); }
     get selectedIndex() { return this.options.findIndex(({ value }) => value === this.value); }
 }
@@ -70,6 +72,27 @@ for (const { word, lowest, highest } of words.material) {
     assert.deepEqual([value, min, max], [+material.material[word].toPrecision(6), lowest, highest]);
 }
 assert.equal(of("others").textContent, "", "the page knows all that it gets");
+
+// The rules for keys and the wheel are those of the replica.
+const depth = of("depth");
+assert.deepEqual([depth.min, depth.max, depth.step, depth.value], [0.1, 2, 0.1, "0.5"]);
+for (const [notches, value] of [[2, 0.7], [100, 2], [-1, 1.9], [-100, 0.1]]) {
+    panel.deepen(notches);
+    assert.deepEqual([told.pop(), depth.value, depth["aria-valuetext"]], [{ depth: value }, String(value), `${Math.round(100 * value)} % of the radius`]);
+}
+of("larger").onclick();
+of("smaller").onclick();
+panel.changeBy("heading", -1);
+panel.changeBy("humidity", 1);
+panel.beginLargeEnough();
+const byNotches = told.splice(-5);
+assert.deepEqual(byNotches, [{ of: "size", notches: 1 }, { of: "size", notches: -1 }, { of: "heading", notches: -1 }, { of: "humidity", notches: 1 }, { enlarge: true }]);
+const { radius, heading } = loaded.material.tool;
+for (const { of: what, notches } of byNotches.slice(1, 4)) {
+    loaded.good(loaded.withText(what, (at) => loaded.wasm._sw_change_by_notches(at, notches)));
+}
+assert.deepEqual([loaded.material.tool.radius, loaded.material.tool.heading, loaded.material.material.humidity], [radius / 1.25, (heading + 355) % 360, 0.1]);
+loaded.good(loaded.wasm._sw_enlarge_tool());
 
 // What a page does not know is offered, or shown by its name.
 const more = begun({ ...words, tools: [...words.tools, "spoon"], edits: [...words.edits, "shake"], seas: ["red"] },

@@ -18,6 +18,7 @@ TEST(PageWords, HaveEveryToolNumberAndEdit) {
     }
     EXPECT_NE(words.find(R"({"word":"talus","lowest":0,"highest":90})"), std::string::npos) << words;
     EXPECT_NE(words.find(R"("edits":["settle","reset","undo","redo"])"), std::string::npos) << words;
+    EXPECT_NE(words.find(R"("depth":{"lowest":0.1,"highest":2,"usual":0.5,"notch":0.1})"), std::string::npos) << words;
 }
 
 TEST(PageWords, TellTheMaterialAndThePartsOfItsTool) {

@@ -41,6 +41,10 @@ export class HandSource implements StepSource {
                 this.replica.setMaterial(message.material, message.value);
             } else if ("depth" in message) {
                 this.replica.setDepth(message.depth);
+            } else if ("notches" in message) {
+                this.replica.changeByNotches(message.of, message.notches);
+            } else if ("enlarge" in message) {
+                this.replica.enlargeTool();
             } else if ("pause" in message) {
                 this.paused = message.pause;
             } else if ("keep" in message) {
@@ -53,7 +57,7 @@ export class HandSource implements StepSource {
         } catch (error) {
             this.stage.tell({ kind: "note", text: (error as Error).message });
         }
-        if ("tool" in message || "material" in message) {
+        if (["tool", "material", "notches", "enlarge"].some((change) => change in message)) {
             this.tellMaterial();
         }
     }

@@ -111,13 +111,13 @@ export class DigPage {
         }
         switch (action) {
             case "tool": return panel.chooseTool(index);
-            case "larger": return panel.resizeBy(1);
-            case "smaller": return panel.resizeBy(-1);
-            case "turnLeft": return panel.turn(1);
-            case "turnRight": return panel.turn(-1);
+            case "larger": return panel.changeBy("size", 1);
+            case "smaller": return panel.changeBy("size", -1);
+            case "turnLeft": return panel.changeBy("heading", 1);
+            case "turnRight": return panel.changeBy("heading", -1);
             case "sceneTool": return panel.restoreTool();
-            case "wetter": return panel.moisten(1);
-            case "drier": return panel.moisten(-1);
+            case "wetter": return panel.changeBy("humidity", 1);
+            case "drier": return panel.changeBy("humidity", -1);
             case "undo": return page.tell({ edit: "undo" });
             case "redo": return page.tell({ edit: "redo" });
             case "newSand": return this.again();
@@ -129,7 +129,7 @@ export class DigPage {
         }
     }
     /** What the wheel changes. */
-    readonly wheel = { depth: (by: number) => this.ready && this.panel.deepen(by), size: (by: number) => this.ready && this.panel.resizeBy(-by) };
+    readonly wheel = { depth: (by: number) => this.ready && this.panel.deepen(by), size: (by: number) => this.ready && this.panel.changeBy("size", -by) };
     private again(): void {
         if (this.kept.mayLeave()) {
             this.page.tell({ again: true });

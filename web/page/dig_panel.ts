@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls for digging: the scene, the tool, the material, edits, and saving.
-import type { DigBegunMessage, DugMessage, Material, MaterialMessage, ToHand, Tool, Words } from "../replica/messages";
+import type { DigBegunMessage, DugMessage, Material, MaterialMessage, Notched, ToHand, Tool, Words } from "../replica/messages";
 import { showOthers } from "./others";
 
 declare const SCENES: string[];  // names of the encoded scenes, which web/build.mjs lists
 
-const kWider = 1.25;         // ratio of the tool's sizes, as for a wall's keys
-const kUsualDepth = "0.5";   // radii
-const kTurn = 5;             // degrees
-const kMoreHumidity = 0.1;
-const kDeeper = 0.1;         // radii
 // What the numbers of a material mean, beside the technical word.
 const kPlain: Record<string, string> = {
     talus: "steepness, in degrees", "wet-talus": "steepness when wet, in degrees", humidity: "wetness, 0 to 1", cohesion: "height of an upright wet bank",
     band: "how much steeper sand at rest can be", "settling-time": "time to rest, in s",
 };
-const kUsableShare = 40, kLeastUsable = 2, kMostUsable = 128;  // radius: part of the field's shorter side, and limits in cells
-const kShortest = 2, kLongest = 0.25;  // length of the tool: cells, and share of the field's shorter side
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const input = (id: string) => element<HTMLInputElement>(id), choice = (id: string) => element<HTMLSelectElement>(id);
@@ -25,9 +18,6 @@ export class DigPanel {
     private words?: Words;
     private material?: MaterialMessage;
     private ofScene?: Material;
-    private cell = 1;            // scene unit
-    private shorter = 1;         // side of the field, scene unit
-    private limits = { least: 0, most: Infinity };  // radius, scene unit
 
     /**
      * `tell` passes a message on to the hand. `open` opens new sand of the scene of that name, and `again` that of the present
@@ -37,8 +27,8 @@ export class DigPanel {
         choice("scene").append(...SCENES.map((name) => new Option(name)));
         element("dig").onclick = () => open(choice("scene").value);
         choice("tool").onchange = () => this.change("kind", choice("tool").value);
-        element("larger").onclick = () => this.resize(kWider);
-        element("smaller").onclick = () => this.resize(1 / kWider);
+        element("larger").onclick = () => this.changeBy("size", 1);
+        element("smaller").onclick = () => this.changeBy("size", -1);
         input("depth").oninput = () => this.setDepth(input("depth").valueAsNumber);
         input("width").onchange = () => this.whenNumber("width", (width) => this.change("width", width));
         input("heading").onchange = () => this.whenNumber("heading", (heading) => this.change("heading", heading));
@@ -56,12 +46,12 @@ export class DigPanel {
     }
 
     private change(part: keyof Tool, value: string | number): void { this.tell({ tool: part, value: String(value) }); }
-    private resize(factor: number): void {
-        const radius = this.material!.tool.radius, { least, most } = this.limits;
-        this.change("radius", Math.min(Math.max(radius * factor, Math.min(least, radius)), Math.max(most, radius)));
+    private showDepth(depth: number): void {
+        input("depth").value = String(+depth.toFixed(6));
+        element("depth").setAttribute("aria-valuetext", `${Math.round(100 * depth)} % of the radius`);
     }
     private setDepth(depth: number): void {
-        element("depth").setAttribute("aria-valuetext", `${Math.round(100 * depth)} % of the radius`);
+        this.showDepth(depth);
         this.tell({ depth });
     }
 
@@ -72,30 +62,13 @@ export class DigPanel {
             this.change("kind", this.words.tools[index]);
         }
     }
-    /** Makes the tool larger by a notch, or smaller by -1. */
-    resizeBy(notches: number): void { this.resize(kWider ** notches); }
-    /** Turns the tool to the left, or to the right by -1. A round tool has no heading. */
-    turn(notches: number): void {
-        const { heading } = this.material!.tool;
-        if (heading !== undefined) {
-            this.change("heading", ((heading + notches * kTurn) % 360 + 360) % 360);
-        }
-    }
+    /** Makes the tool larger or the sand wetter, or turns the tool to the left, by notches. Negative ones do the opposite. */
+    changeBy(of: Notched, notches: number): void { this.tell({ of, notches }); }
     /** Gives new sand a tool with which a person sees what they dig, by an edit. */
-    beginLargeEnough(): void {
-        const usable = Math.min(Math.max(this.shorter / kUsableShare, kLeastUsable * this.cell), kMostUsable * this.cell);
-        if (this.material!.tool.radius < usable) {
-            this.change("radius", usable);
-        }
-    }
+    beginLargeEnough(): void { this.tell({ enlarge: true }); }
     deepen(notches: number): void {
-        const depth = Math.min(Math.max(input("depth").valueAsNumber + kDeeper * notches, Number(input("depth").min)), Number(input("depth").max));
-        input("depth").value = depth.toFixed(1);
-        this.setDepth(Number(input("depth").value));
-    }
-    moisten(notches: number): void {
-        const humidity = this.material!.material.humidity + kMoreHumidity * notches;
-        this.tell({ material: "humidity", value: Math.min(Math.max(+humidity.toFixed(6), 0), 1) });
+        const { lowest, highest, notch } = this.words!.depth;
+        this.setDepth(Math.min(Math.max(input("depth").valueAsNumber + notch * notches, lowest), highest));
     }
     /** Gives tool and humidity of the scene back, and the usual depth. */
     restoreTool(): void {
@@ -103,8 +76,7 @@ export class DigPanel {
             this.change(part as keyof Tool, value);
         }
         this.tell({ material: "humidity", value: this.ofScene!.material.humidity });
-        input("depth").value = kUsualDepth;
-        this.setDepth(Number(kUsualDepth));
+        this.setDepth(this.words!.depth.usual);
     }
 
     private whenNumber(id: string, use: (number: number) => void): void {
@@ -125,7 +97,9 @@ export class DigPanel {
         for (const edit of words.edits) {
             (document.getElementById(edit) ?? this.added(edit)).onclick = edit === "reset" ? () => this.again() : () => this.tell({ edit });
         }
-        showOthers("words", words, ["tools", "material", "edits"]);
+        const { lowest, highest, notch } = words.depth;
+        Object.assign(input("depth"), { min: lowest, max: highest, step: notch });
+        showOthers("words", words, ["tools", "material", "edits", "depth"]);
     }
     private added(edit: string): HTMLElement {
         const button = Object.assign(document.createElement("button"), { id: edit, textContent: edit });
@@ -142,10 +116,7 @@ export class DigPanel {
             }
             this.scene = sand.name;
             this.ofScene = sand.sceneMaterial;
-            this.cell = sand.cell;
-            this.shorter = Math.min(sand.columns, sand.rows) * sand.cell;
-            this.limits = { least: kShortest * sand.cell / 2, most: kLongest * Math.min(sand.columns, sand.rows) * sand.cell / 2 };
-            input("depth").value = kUsualDepth;
+            this.showDepth(sand.words.depth.usual);
             element<HTMLButtonElement>("undo").disabled = true;
         }
     }

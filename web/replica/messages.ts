@@ -30,6 +30,7 @@ export interface Words {
     tools: string[];
     material: { word: string; lowest: number; highest: number }[];
     edits: string[];
+    depth: { lowest: number; highest: number; usual: number; notch: number };  // of the tool, in radii
 }
 
 /** The parts of a tool by their names. It has no others. */
@@ -44,11 +45,16 @@ export interface Tool {
 /** For each reading of the pointer: time in ms, eye, direction of the sight in cells, and 1 if it is pressed. */
 export const kReadingNumbers = 8;
 
+/** What keys and the wheel change by notches (web/hand/notches.hpp). */
+export type Notched = "size" | "heading" | "humidity";
+
 export type ToHand =
     | { hand: Float64Array }
     | { edit: string }
     | { tool: string; value: string }       // a part of the tool
     | { material: string; value: number }   // an operator's word, such as "talus"
+    | { of: Notched; notches: number }      // of a key or the wheel
+    | { enlarge: true }                     // a tool that is too small to be seen gets the usual size
     | { depth: number }                     // of the tool, in radii
     | { save: true }
     | { pause: boolean }

@@ -147,6 +147,10 @@ export class Replica {
     setTool(part: string, value: string): void {
         this.withText(value, (to) => this.withText(part, (at) => this.wasm._sw_set_tool(at, to)));
     }
+    /** Changes size, heading or humidity as keys of a window do. */
+    changeByNotches(of: string, notches: number): void { this.withText(of, (at) => this.wasm._sw_change_by_notches(at, notches)); }
+    /** Gives a tool that is too small to be seen the usual size. */
+    enlargeTool(): void { this.require(this.wasm._sw_enlarge_tool()); }
     /** How many steps the hand or an edit has changed. */
     get touched(): number { return this.wasm._sw_touched(); }
     /** Whether the scene's sand has been changed. */

@@ -169,10 +169,10 @@ TEST_F(WindowDesk, ChangesDepthAndSizeByTheWheelWithinTheirLimits) {
     EXPECT_EQ(answerIn(1), "depth 70 % of the radius");
     pointers[1].depth = -100;
     desk_->windows().turnWheels(pointers);
-    EXPECT_EQ(desk_->windows().depth(), master::kShallowest);
+    EXPECT_EQ(desk_->windows().depth(), haptic_bridge::kShallowest);
     EXPECT_EQ(answerIn(1), "depth 10 % of the radius, the shallowest");
     press(plain('0'));
-    EXPECT_EQ(desk_->windows().depth(), master::kUsualDepth);
+    EXPECT_EQ(desk_->windows().depth(), haptic_bridge::kUsualDepth);
     pointers[1] = {};
     pointers[1].size = -100;
     desk_->windows().turnWheels(pointers);

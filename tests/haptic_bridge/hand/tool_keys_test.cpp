@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/operator/tool_keys.hpp"
+#include "haptic_bridge/hand/tool_keys.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 namespace {
 
-using master::ToolLimits;
+using haptic_bridge::ToolLimits;
 
 TEST(ToolKeys, LetTheToolBeFromTwoCellsToAQuarterOfTheField) {
     const scene::Scene scene = samples::flatScene(320, 80);
@@ -53,26 +53,26 @@ TEST(ToolKeys, OfATinyFieldKeepTheSmallestTool) {
 }
 
 TEST(ToolKeys, KeepTheDepthWhereTheToolDigs) {
-    EXPECT_NEAR(master::deepened(0.5, 2), 0.7, 1e-12);
-    EXPECT_EQ(master::deepened(0.5, -100), 0.1) << "at 0 the wheel has switched digging off";
-    EXPECT_EQ(master::deepened(0.5, 1000), 2);
+    EXPECT_NEAR(haptic_bridge::deepened(0.5, 2), 0.7, 1e-12);
+    EXPECT_EQ(haptic_bridge::deepened(0.5, -100), 0.1) << "at 0 the wheel has switched digging off";
+    EXPECT_EQ(haptic_bridge::deepened(0.5, 1000), 2);
 }
 
 TEST(ToolKeys, TurnAroundTheWholeCircle) {
-    EXPECT_EQ(master::turned(358, 5), 3);
-    EXPECT_EQ(master::turned(3, -5), 358);
-    EXPECT_EQ(master::turned(-90, 5), 275) << "a scene may count clockwise";
-    EXPECT_EQ(master::turned(0, 0), 0);
+    EXPECT_EQ(haptic_bridge::turned(358, 5), 3);
+    EXPECT_EQ(haptic_bridge::turned(3, -5), 358);
+    EXPECT_EQ(haptic_bridge::turned(-90, 5), 275) << "a scene may count clockwise";
+    EXPECT_EQ(haptic_bridge::turned(0, 0), 0);
 }
 
 TEST(ToolKeys, KeepHumidityWithinItsRangeAndRound) {
     double humidity = 0;
     for (int i = 0; i < 3; ++i) {
-        humidity = master::moistened(humidity, master::kMoreHumidity);
+        humidity = haptic_bridge::moistened(humidity, haptic_bridge::kMoreHumidity);
     }
     EXPECT_EQ(humidity, 0.3) << "and not the sum of three tenths";
-    EXPECT_EQ(master::moistened(0.95, 0.1), 1);
-    EXPECT_EQ(master::moistened(0.05, -0.1), 0);
+    EXPECT_EQ(haptic_bridge::moistened(0.95, 0.1), 1);
+    EXPECT_EQ(haptic_bridge::moistened(0.05, -0.1), 0);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "scene/model/material.hpp"
 #include "scene/model/scene.hpp"
 
-namespace master {
+namespace haptic_bridge {
 
 /// Smallest and largest radius to which keys and the wheel change the tool [scene unit].
 struct ToolLimits {
@@ -22,9 +22,9 @@ struct ToolLimits {
 };
 
 // Depth of the pointer's tool: how far its underside is below the sand's surface [tool radius].
-inline constexpr double kUsualDepth = haptic_bridge::PointerHand::kUsualDepth, kDepthPerNotch = 0.1;
-inline constexpr double kShallowest = haptic_bridge::PointerHand::kShallowest;
-inline constexpr double kDeepest = haptic_bridge::PointerHand::kDeepest;
+inline constexpr double kUsualDepth = PointerHand::kUsualDepth, kDepthPerNotch = 0.1;
+inline constexpr double kShallowest = PointerHand::kShallowest;
+inline constexpr double kDeepest = PointerHand::kDeepest;
 /// Returns the depth after `notches` of the wheel, positive towards the user, within its limits.
 [[nodiscard]] double deepened(double depth, double notches);
 
@@ -36,4 +36,4 @@ inline constexpr double kMoreHumidity = 0.1;  // by which a key makes sand wette
 /// Returns a humidity that was raised by `more`, within [0, 1] and without the noise of sums of tenths.
 [[nodiscard]] double moistened(double humidity, double more);
 
-}  // namespace master
+}  // namespace haptic_bridge

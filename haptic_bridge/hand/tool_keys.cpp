@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/operator/tool_keys.hpp"
+#include "haptic_bridge/hand/tool_keys.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace master {
+namespace haptic_bridge {
 namespace {
 
 constexpr double kWider = 1.25;    // ratio of the tool's sizes after and before a notch
@@ -41,4 +41,4 @@ double moistened(double humidity, double more) {
     return std::clamp(std::round((humidity + more) * 1000) / 1000, 0.0, 1.0);
 }
 
-}  // namespace master
+}  // namespace haptic_bridge
