@@ -39,7 +39,12 @@ export async function serve(session) {
 export function complaintsOf(page, address) {
     const complaints = [], origin = new URL(address).origin;
     // A part of a journal that does not exist is how the page finds the last one.
-    page.on("console", (message) => { if (message.type() === "error" && !/\.journal\.\d+$/.test(message.location().url ?? "")) { complaints.push(message.text()); } });
+    page.on("console", (message) => {
+        const { url = "" } = message.location(), text = `${message.text()} (${url})`;
+        if (message.type() === "error" && !/404 .*\.journal\.\d+\)$/.test(text)) {
+            complaints.push(text);
+        }
+    });
     page.on("pageerror", (error) => complaints.push(String(error)));
     page.on("request", (request) => { if (!request.url().startsWith(origin) && !/^(data|blob):/.test(request.url())) { complaints.push(`a request to ${request.url()}`); } });
     return complaints;

@@ -4,6 +4,8 @@ import assert from "node:assert/strict";
 import { builtModule } from "./built_module.mjs";
 
 const { Keeper } = await builtModule("kept/keeper.ts");
+let clock = 0;  // ms
+performance.now = () => clock;
 
 /** Sand of which each test says what the hand has done. */
 class Sand {
@@ -14,7 +16,7 @@ class Sand {
     get written() { return 100 + 10 * this.step; }
     journalFrom(offset) { return new ArrayBuffer(this.written - offset); }
     beginsWith(bytes) { return bytes.byteLength <= this.written; }
-    state() { return new Uint8Array(3); }
+    state() { return new Uint8Array(3); }  // too large in some tests
     hover() { this.step += 1; }
     dig() {
         this.step += 1;
@@ -22,19 +24,26 @@ class Sand {
         this.dug = true;
     }
 }
-/** A browser that writes, or refuses with `refusal`. */
+/** A browser that writes, or refuses with `refusal`. `refusesState`: it refuses pieces with a state. */
 class Browser {
     pieces = [];
+    states = 0;
     refusal = undefined;
+    refusesState = false;
     gone = [];
-    async write(session, piece) {
+    async write(session, { offset, bytes, state }) {
         if (this.refusal) {
             throw this.refusal;
         }
-        this.pieces.push({ id: session.id, offset: piece.offset, length: piece.bytes.byteLength });
+        if (state && this.refusesState) {
+            throw full();
+        }
+        this.states += state ? 1 : 0;
+        this.pieces.push({ id: session.id, offset, length: bytes.byteLength });
         return this.gone;
     }
 }
+const full = () => Object.assign(new Error("x"), { name: "QuotaExceededError" });
 const settled = () => new Promise((resolve) => setTimeout(resolve));
 function begun(browser, why = "") {
     const told = [], session = { id: "a", name: "dunes", began: 0, changed: 0, seconds: 0 };
@@ -93,7 +102,7 @@ function begun(browser, why = "") {
     const { sand, keeper, told } = begun(undefined, "it has no IndexedDB");
     sand.dig();
     keeper.work(sand, false);
-    assert.deepEqual([told.at(-1).unkept, told.at(-1).why, keeper.waits], [true, "it has no IndexedDB", false]);
+    assert.deepEqual([told.at(-1).unkept, told.at(-1).why, keeper.waitMs], [true, "it has no IndexedDB", undefined]);
     keeper.save(sand);
     keeper.work(sand, false);
     assert.equal(told.at(-1).unkept, false);
@@ -103,14 +112,85 @@ function begun(browser, why = "") {
 }
 {   // A full disk, and then not.
     const browser = new Browser(), { sand, keeper, told } = begun(browser);
-    browser.refusal = Object.assign(new Error("x"), { name: "QuotaExceededError" });
+    browser.refusal = full();
     sand.dig();
     await keeper.flush(sand);
-    assert.deepEqual([told.at(-1).unkept, told.at(-1).why, keeper.waits], [true, "its storage is full", true]);
+    assert.deepEqual([told.at(-1).unkept, told.at(-1).why, keeper.waitMs > 0], [true, "its storage is full", true]);
     browser.refusal = undefined;
     await keeper.flush(sand);
     assert.deepEqual([told.at(-1).unkept, told.at(-1).why, told.at(-1).gone], [false, "", ["The sand is kept again."]]);
     assert.deepEqual(browser.pieces, [{ id: "a", offset: 0, length: 110 }]);
-    assert.equal(keeper.waits, false);
+    assert.equal(keeper.waitMs, undefined);
+}
+{   // On a full disk the page tries again after 5 s, and then ever more rarely.
+    const browser = new Browser(), { sand, keeper, told } = begun(browser), waits = [];
+    browser.refusal = full();
+    sand.dig();
+    for (let i = 0; i < 6; ++i) {
+        keeper.work(sand, false);
+        await settled();
+        waits.push(keeper.waitMs);
+        clock += keeper.waitMs - 1;
+        browser.refusal = new Error("was asked too early");
+        keeper.work(sand, false);
+        await settled();
+        browser.refusal = full();
+        clock += 1;
+    }
+    assert.deepEqual(waits, [5000, 10_000, 20_000, 40_000, 60_000, 60_000]);
+    assert.deepEqual(told.map(({ unkept, why }) => [unkept, why]), [[true, ""], [true, "its storage is full"]], "the page is told of changes alone");
+    browser.refusal = undefined;
+    keeper.work(sand, false);
+    await settled();
+    assert.deepEqual([told.at(-1).unkept, keeper.waitMs], [false, undefined]);
+    sand.dig();
+    browser.refusal = full();
+    keeper.work(sand, false);
+    await settled();
+    assert.equal(keeper.waitMs, 5000);
+}
+{   // A state that the memory or the browser has no room for keeps no sand from being kept. It is tried again after a minute.
+    const browser = new Browser(), { sand, keeper, told } = begun(browser);
+    let states = 0;
+    async function dig(ms) {
+        clock += ms;
+        sand.dig();
+        await keeper.flush(sand);
+        assert.deepEqual([told.at(-1).unkept, told.at(-1).why], [false, ""]);
+    }
+    sand.state = () => {
+        states += 1;
+        throw new Error("This page has no more memory");
+    };
+    await dig(6000);
+    await dig(6000);
+    assert.deepEqual([browser.pieces.length, states], [2, 1]);
+    sand.state = () => {
+        states += 1;
+        return new Uint8Array(3);
+    };
+    browser.refusesState = true;
+    await dig(60_000);
+    await dig(6000);
+    assert.deepEqual([browser.pieces.length, states, browser.states], [4, 2, 0]);
+    browser.refusesState = false;
+    await dig(60_000);
+    assert.deepEqual([browser.pieces.length, states, browser.states], [5, 3, 1]);
+    assert.deepEqual(browser.pieces.map(({ offset }) => offset), [0, 110, 120, 130, 140]);
+}
+{   // If the browser has lost what was kept, all is written anew.
+    const browser = new Browser(), { sand, keeper, told } = begun(browser), write = browser.write.bind(browser);
+    sand.dig();
+    await keeper.flush(sand);
+    browser.write = async (session, piece) => {
+        if (piece.offset > 0) {
+            throw Object.assign(new Error("gone"), { name: "LostSand" });
+        }
+        return write(session, piece);
+    };
+    sand.dig();
+    await keeper.flush(sand);
+    assert.deepEqual(browser.pieces, [{ id: "a", offset: 0, length: 110 }, { id: "a", offset: 0, length: 120 }]);
+    assert.deepEqual([told.at(-1).unkept, told.at(-1).why], [false, ""]);
 }
 console.log("the page keeps what the hand has dug, and says so if it cannot");

@@ -15,6 +15,8 @@ node tests/web/keyframes_test.mjs
 node tests/web/fetched_test.mjs
 node tests/web/keeper_test.mjs
 node tests/web/keys_test.mjs
+node tests/web/beginnings_test.mjs
+node tests/web/hand_source_test.mjs
 "$1" "$folder" >"$folder/list"
 node tests/web/replica_test.mjs build/web/bin "$folder" "$folder/list"
 

@@ -2,7 +2,7 @@
 // The page's hand as the source of steps. A step is due whenever the time of one has passed, as in a session. Its sweeps
 // are spread, so the worker answers between two steps.
 import type { Keeper } from "../kept/keeper";
-import type { ToWorker } from "../replica/messages";
+import { kReadingNumbers, type ToWorker } from "../replica/messages";
 import type { Replica } from "../replica/replica";
 import { kSliceMs, type Stage, type StepSource } from "../replica/step_source";
 
@@ -21,6 +21,7 @@ export class HandSource implements StepSource {
     private longest = 0;           // ms, of a step since the message before
     private resting = 0;           // steps
     private pressed = false;
+    private reading = new Float64Array(kReadingNumbers);  // that came last
     private paused = false;
 
     constructor(private readonly replica: Replica, private readonly stepsPerSecond: number, private readonly stage: Stage, private readonly keeper: Keeper) {
@@ -31,8 +32,7 @@ export class HandSource implements StepSource {
         this.resting = 0;
         try {
             if ("hand" in message) {
-                this.replica.point(message.hand);
-                this.pressed = message.hand.at(-1) === 1;
+                this.point(message.hand);
             } else if ("edit" in message) {
                 this.replica.ask(message.edit);
             } else if ("tool" in message) {
@@ -46,7 +46,7 @@ export class HandSource implements StepSource {
             } else if ("enlarge" in message) {
                 this.replica.enlargeTool();
             } else if ("pause" in message) {
-                this.paused = message.pause;
+                this.pause(message.pause);
             } else if ("keep" in message) {
                 this.keeper.hurry();
             } else if ("save" in message) {
@@ -61,12 +61,27 @@ export class HandSource implements StepSource {
             this.tellMaterial();
         }
     }
+    private point(readings: Float64Array): void {
+        if (!this.paused) {  // no step would take them, so they would fill the memory
+            this.replica.point(readings);
+            this.reading = readings.slice(-kReadingNumbers);
+            this.pressed = readings.at(-1) === 1;
+        }
+    }
+    /** Pauses, or resumes. A pause lifts the tool, so that a stroke does not go on from there to where the pointer is afterwards. */
+    private pause(on: boolean): void {
+        if (on && this.pressed) {
+            const [ms, ...sight] = this.reading;
+            this.point(Float64Array.from([ms + 1, ...sight.slice(0, -1), 0]));
+        }
+        this.paused = on;
+    }
 
     work(): number | undefined {
         const began = performance.now();
         this.due = Math.min(this.due + (began - this.last) * this.stepsPerSecond / 1000, kMostDue);
         this.last = began;
-        this.due = this.paused ? 0 : this.due;
+        this.due = this.waits ? 0 : this.due;
         while (this.due >= 1 && performance.now() - began < kSliceMs) {
             this.due -= 1;
             this.step();
@@ -75,13 +90,15 @@ export class HandSource implements StepSource {
             this.changed = false;
         }
         const now = performance.now();
-        if (now - this.told >= kProgressMs && this.toldStep !== this.replica.step) {
+        if ((this.waits || now - this.told >= kProgressMs) && this.toldStep !== this.replica.step) {
             this.tellStep(this.longest >= kLongMs ? `A step of this sand takes ${Math.round(this.longest)} ms; the page waits for it.` : "");
             this.longest = 0;
         }
         this.keeper.work(this.replica, this.pressed);
-        return (this.paused || this.resting > kMostResting) && !this.keeper.waits ? undefined : Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
+        return this.waits ? this.keeper.waitMs : Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
     }
+    /** Whether no step is made until a message comes. */
+    private get waits(): boolean { return this.paused || this.resting > kMostResting; }
 
     private step(): void {
         if (this.replica.settlesNext) {

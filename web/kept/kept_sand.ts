@@ -4,6 +4,7 @@
 
 export const kMostKept = 10;     // sessions
 const kHandOverMs = 1500;        // in which a page that was left gives its lock back
+const kStores = ["sessions", "pieces", "states"];
 
 /** A session in the list. */
 export interface KeptSession {
@@ -12,6 +13,7 @@ export interface KeptSession {
     began: number;       // ms since 1970
     changed: number;     // ms since 1970
     seconds: number;     // of sand
+    bytes?: number;      // of its journal
 }
 
 /** A whole state of the sand, with which a session continues sooner. */
@@ -26,6 +28,11 @@ export interface Piece {
     offset: number;
     bytes: ArrayBuffer;
     state?: KeptState;
+}
+
+/** Says that the browser has no longer what a session has written before. All of its journal must be written again. */
+export class LostSand extends Error {
+    override readonly name = "LostSand";
 }
 
 /** Returns the result of a request. */
@@ -46,10 +53,19 @@ const lockOf = (id: string) => `sandwall sand ${id}`;
 /** All pieces of a session from `offset` on. */
 const piecesOf = (id: string, offset = 0) => IDBKeyRange.bound([id, offset], [id, Infinity]);
 
+/** Opens the database of the page's address. */
+async function opened(): Promise<IDBDatabase> {
+    const request = indexedDB.open("sandwall", 1);
+    request.onupgradeneeded = () => {
+        request.result.createObjectStore("sessions", { keyPath: "id" });
+        request.result.createObjectStore("pieces", { keyPath: ["id", "offset"] });
+        request.result.createObjectStore("states", { keyPath: "id" });
+    };
+    return resultOf(request);
+}
+
 export class KeptSand {
-    private constructor(private readonly data: IDBDatabase) {
-        data.onversionchange = () => data.close();
-    }
+    private constructor(private data?: IDBDatabase) {}
 
     /** Throws with a reason if this browser keeps nothing. */
     static async open(): Promise<KeptSand> {
@@ -59,18 +75,43 @@ export class KeptSand {
         if (!globalThis.indexedDB) {
             throw new Error("it has no IndexedDB");
         }
-        const request = indexedDB.open("sandwall", 1);
-        request.onupgradeneeded = () => {
-            request.result.createObjectStore("sessions", { keyPath: "id" });
-            request.result.createObjectStore("pieces", { keyPath: ["id", "offset"] });
-            request.result.createObjectStore("states", { keyPath: "id" });
-        };
-        return new KeptSand(await resultOf(request));
+        const kept = new KeptSand();
+        await kept.connect();
+        return kept;
+    }
+    /** Opens the database, also after the browser or another page has closed it. */
+    private async connect(): Promise<IDBDatabase> {
+        if (!this.data) {
+            const data = this.data = await opened();
+            data.onversionchange = () => {
+                data.close();
+                this.forget(data);
+            };
+            data.onclose = () => this.forget(data);
+        }
+        return this.data;
+    }
+    private forget(data: IDBDatabase): void {
+        if (this.data === data) {
+            this.data = undefined;
+        }
+    }
+    private async transaction(stores: string[], mode: IDBTransactionMode = "readonly"): Promise<IDBTransaction> {
+        const data = await this.connect();
+        try {
+            return data.transaction(stores, mode);
+        } catch (error) {
+            if ((error as Error).name !== "InvalidStateError") {
+                throw error;
+            }
+            this.forget(data);  // it was closed without an event
+            return (await this.connect()).transaction(stores, mode);
+        }
     }
 
     /** Returns all sessions, the newest first. */
     async list(): Promise<KeptSession[]> {
-        const all: KeptSession[] = await resultOf(this.data.transaction("sessions").objectStore("sessions").getAll());
+        const all: KeptSession[] = await resultOf((await this.transaction(["sessions"])).objectStore("sessions").getAll());
         return all.sort((a, b) => b.changed - a.changed);
     }
 
@@ -83,11 +124,11 @@ export class KeptSand {
         });
     }
 
-    /** Returns a journal in its pieces, and the state if there is one. */
-    async read(id: string): Promise<{ bytes: ArrayBuffer; state?: KeptState }> {
-        const from = this.data.transaction(["pieces", "states"]);
-        const [pieces, state] = await Promise.all([resultOf(from.objectStore("pieces").getAll(piecesOf(id))), resultOf(from.objectStore("states").get(id))]);
-        return { bytes: await new Blob(pieces.map((piece) => piece.bytes)).arrayBuffer(), state };
+    /** Returns a session, its journal, and the state if there is one; undefined if the session was removed. */
+    async read(id: string): Promise<{ session: KeptSession; bytes: ArrayBuffer; state?: KeptState } | undefined> {
+        const from = await this.transaction(kStores), of = (store: string) => from.objectStore(store);
+        const [session, pieces, state] = await Promise.all([resultOf(of("sessions").get(id)), resultOf(of("pieces").getAll(piecesOf(id))), resultOf(of("states").get(id))]);
+        return session && { session, bytes: await new Blob(pieces.map((piece) => piece.bytes)).arrayBuffer(), state };
     }
 
     /**
@@ -95,41 +136,49 @@ export class KeptSand {
      * the oldest ones that had to go. Throws if the browser refuses, and then nothing is changed.
      */
     async write(session: KeptSession, { offset, bytes, state }: Piece): Promise<KeptSession[]> {
-        const held = new Set((await navigator.locks.query()).held?.map((lock) => lock.name));
-        const to = this.data.transaction(["sessions", "pieces", "states"], "readwrite");
-        const done = ended(to), gone: KeptSession[] = [];
+        const to = await this.transaction(kStores, "readwrite"), done = ended(to);
+        if (offset > 0) {
+            const before: KeptSession | undefined = await resultOf(to.objectStore("sessions").get(session.id));
+            if (before?.bytes !== offset) {
+                await done;
+                throw new LostSand("the sand that was kept before is gone");
+            }
+        }
         to.objectStore("pieces").delete(piecesOf(session.id, offset));
         to.objectStore("pieces").put({ id: session.id, offset, bytes });
         if (state) {
             to.objectStore("states").put({ id: session.id, ...state });
         }
-        to.objectStore("sessions").put(session);
-        const listed = to.objectStore("sessions").getAll();
-        listed.onsuccess = () => {
-            const old = (listed.result as KeptSession[]).filter(({ id }) => id !== session.id && !held.has(lockOf(id))).sort((a, b) => a.changed - b.changed);
-            gone.push(...old.slice(0, Math.max(0, listed.result.length - kMostKept)));
-            gone.forEach(({ id }) => this.removeIn(to, id));
-        };
+        to.objectStore("sessions").put({ ...session, bytes: offset + bytes.byteLength });
         await done;
+        return this.removeOldest(session.id).catch(() => []);  // the piece is written; the next one tries again
+    }
+    /** Removes the oldest sessions beyond the limit. One that a tab has stays. Returns those that went. */
+    private async removeOldest(mine: string): Promise<KeptSession[]> {
+        const all = await this.list(), gone: KeptSession[] = [];
+        for (const session of all.reverse()) {
+            if (all.length - gone.length > kMostKept && session.id !== mine && await this.remove(session.id)) {
+                gone.push(session);
+            }
+        }
         return gone;
     }
 
-    /** Removes a session, which is not that of this tab or of another one. Returns whether it did. */
+    /**
+     * Removes a session, which is not that of this tab or of another one. Returns whether it did. A tab that takes the
+     * session waits for the lock meanwhile, and finds it gone then.
+     */
     async remove(id: string): Promise<boolean> {
-        const found = await navigator.locks.request(lockOf(id), { ifAvailable: true }, async (lock) => {
+        return navigator.locks.request(lockOf(id), { ifAvailable: true }, async (lock) => {
             if (!lock) {
                 return false;
             }
-            const to = this.data.transaction(["sessions", "pieces", "states"], "readwrite"), done = ended(to);
-            this.removeIn(to, id);
+            const to = await this.transaction(kStores, "readwrite"), done = ended(to);
+            to.objectStore("sessions").delete(id);
+            to.objectStore("states").delete(id);
+            to.objectStore("pieces").delete(piecesOf(id));
             await done;
             return true;
         });
-        return found;
-    }
-    private removeIn(to: IDBTransaction, id: string): void {
-        to.objectStore("sessions").delete(id);
-        to.objectStore("states").delete(id);
-        to.objectStore("pieces").delete(piecesOf(id));
     }
 }

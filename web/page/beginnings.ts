@@ -31,21 +31,59 @@ async function sceneNamed(name: string): Promise<ArrayBuffer> {
     return fetched.bytes;
 }
 
+/** Ends a beginning, because the person has chosen other sand meanwhile. */
+class Superseded extends Error {}
+/** Another tab has removed the sand. */
+class Removed extends Error {}
+
 export class Beginnings {
     private keyframes = new Keyframes();
     private keeper?: Keeper;              // of the session that is dug
     private letGo?: () => void;           // gives its lock back
+    private isBetween = false;            // the replica has sand whose steps no source makes
     private current = "";                 // its id
-    private beginnings = 0;               // that the page has asked for
-    private readonly keeping = KeptSand.open().then((data) => ({ data, why: "" }), (error: Error) => ({ data: undefined, why: error.message }));
+    private asked = 0;                    // beginnings
+    private running = 0;                  // number of the one that runs
+    private readonly keeping: Promise<{ data?: KeptSand; why: string }>;
 
-    constructor(private readonly stage: BeginningStage) {}
+    constructor(private readonly stage: BeginningStage, open: () => Promise<KeptSand> = KeptSand.open) {
+        this.keeping = open().then((data) => ({ data, why: "" }), (error: Error) => ({ data: undefined, why: error.message }));
+    }
 
-    /** Returns how to begin as a message asks, or undefined if it asks for something else. */
+    /**
+     * Returns how to begin as a message asks, or undefined if it asks for something else. The newest beginning counts: those
+     * before it end, and do nothing if they have not begun. They are carried out one after the other.
+     */
     take(message: ToWorker): (() => Promise<void>) | undefined {
         const beginning = this.beginningOf(message);
-        this.beginnings += beginning ? 1 : 0;
-        return beginning;
+        if (!beginning) {
+            return undefined;
+        }
+        const number = ++this.asked;
+        return async () => {
+            this.running = number;
+            if (number === this.asked) {
+                await beginning().catch((error) => this.refuse(error));
+            }
+        };
+    }
+    /** Ends the beginning that runs if there is a newer one. */
+    private goOnIfNewest(): void {
+        if (this.running !== this.asked) {
+            throw new Superseded();
+        }
+    }
+    /** A beginning was refused. The session before goes on. If that is gone, what it had is kept, and new sand of its scene follows. */
+    private async refuse(error: Error): Promise<void> {
+        if (error instanceof Superseded) {
+            return;
+        }
+        if (this.isBetween) {
+            const it = await this.stage.loaded();
+            it.digAgain();
+            await this.beginHand(it, newSession(it.session().name), this.tellDig(it, ""));
+        }
+        throw error;
     }
     private beginningOf(message: ToWorker): (() => Promise<void>) | undefined {
         if ("open" in message) {
@@ -58,8 +96,6 @@ export class Beginnings {
             return () => this.again();
         } else if ("goOn" in message) {
             return () => this.goOnWith(message.goOn);
-        } else if ("forget" in message) {
-            return () => this.forget(message.forget);
         }
         return undefined;
     }
@@ -72,7 +108,11 @@ export class Beginnings {
         this.keeper = undefined;
         this.letGo?.();
         this.letGo = undefined;
-        this.stage.begin();
+        this.begin();
+    }
+    private begin(next?: StepSource): void {
+        this.isBetween = next === undefined;
+        this.stage.begin(next);
     }
 
     private async open({ name, address, parts }: OpenMessage): Promise<void> {
@@ -81,7 +121,7 @@ export class Beginnings {
         it.open(name, parts);
         this.end();
         const opened = it.session();
-        this.stage.begin(new JournalSource(it, opened, this.keyframes, this.stage));
+        this.begin(new JournalSource(it, opened, this.keyframes, this.stage));
         this.stage.tell({ kind: "session", address, ...opened });
     }
 
@@ -105,7 +145,7 @@ export class Beginnings {
         if (bytes) {
             this.keeper.goOn(it, bytes);
         }
-        this.stage.begin(new HandSource(it, stepsPerSecond, this.stage, this.keeper));
+        this.begin(new HandSource(it, stepsPerSecond, this.stage, this.keeper));
         this.stage.tell({ kind: "hand", step: it.step, hash: it.hash });
         this.current = session.id;
         await this.tellSessions();
@@ -128,6 +168,7 @@ export class Beginnings {
         }
         const bytes = await (scene ?? file!.arrayBuffer());
         await this.flush();
+        this.goOnIfNewest();
         it.dig(name, bytes, scene !== undefined);
         this.end();
         await this.beginHand(it, newSession(it.session().name), this.tellDig(it, note));
@@ -142,7 +183,6 @@ export class Beginnings {
 
     /** Computes the sand of a kept journal in slices. */
     private async compute(it: Replica, { name, seconds }: KeptSession, stepsPerSecond: number): Promise<void> {
-        const mine = this.beginnings;
         for (let told = performance.now(); ; ) {
             const began = performance.now();
             while (performance.now() - began < kSliceMs) {
@@ -155,32 +195,40 @@ export class Beginnings {
                 this.stage.tell({ kind: "note", text: `Computing your sand of ${name} again: ${Math.floor(it.step / stepsPerSecond)} of ${seconds} s.` });
             }
             await new Promise((resolve) => setTimeout(resolve));
-            if (mine !== this.beginnings) {
-                throw new Error("Other sand was chosen.");
-            }
+            this.goOnIfNewest();
         }
     }
     /** Goes on with a kept session. Throws a sentence if another tab has it, or if it cannot be read. */
-    private async goOn(session: KeptSession): Promise<void> {
-        const it = await this.stage.loaded(), data = (await this.keeping).data!, { id, name, changed } = session;
+    private async goOn({ id, name }: KeptSession): Promise<void> {
+        const it = await this.stage.loaded(), data = (await this.keeping).data!;
         const held = await data.hold(id);
         if (!held) {
             throw new Error(`Another tab digs in the kept sand of ${name}.`);
         }
         let stepsPerSecond = 0;
-        const from = async (bytes: ArrayBuffer, state?: KeptState) => {
+        const from = async (session: KeptSession, bytes: ArrayBuffer, state?: KeptState) => {
             it.return(name, bytes.slice(0), state);
             this.end();
-            stepsPerSecond = this.tellDig(it, "", changed);
+            stepsPerSecond = this.tellDig(it, "", session.changed);
             this.stage.show();  // the sand of the scene, of which the page makes the box and the difference to the start
             await this.compute(it, session, stepsPerSecond);
         };
-        let bytes: ArrayBuffer;
+        let kept: { session: KeptSession; bytes: ArrayBuffer };
         try {
-            const { bytes: kept, state } = await data.read(id);
-            bytes = kept;
+            const read = await data.read(id);
+            if (!read) {
+                throw new Removed(`The kept sand of ${name} was removed in another tab.`);
+            }
+            kept = read;
+            const { session, bytes, state } = read;
             await this.flush();
-            await from(bytes, state).catch((error) => (state ? from(bytes) : Promise.reject(error)));  // a state may be damaged
+            this.goOnIfNewest();
+            await from(session, bytes, state).catch((error) => {
+                if (!state || error instanceof Superseded) {
+                    throw error;
+                }
+                return from(session, bytes);  // the state may be damaged
+            });
         } catch (error) {
             held();
             throw error;
@@ -188,7 +236,7 @@ export class Beginnings {
         const shortcoming = it.session().shortcoming;
         if (shortcoming === "") {
             this.letGo = held;
-            await this.beginHand(it, session, stepsPerSecond, bytes);
+            await this.beginHand(it, kept.session, stepsPerSecond, kept.bytes);
         } else {
             held();
             await this.beginHand(it, newSession(name), stepsPerSecond);
@@ -207,7 +255,8 @@ export class Beginnings {
                 return await this.goOn(newest);
             }
         } catch (error) {
-            note = `${(error as Error).message.replace(/\.?$/, ".")} This tab has new sand, and the other stays.`;
+            this.goOnIfNewest();
+            note = `${(error as Error).message.replace(/\.?$/, ".")} This tab has new sand${error instanceof Removed ? "" : ", and the other stays"}.`;
         }
         await this.dig({ name: scene }, note, fetched);
     }
@@ -216,21 +265,14 @@ export class Beginnings {
         if (!session || (id === this.current && this.keeper)) {
             return;
         }
-        try {
-            await this.goOn(session);
-        } catch (error) {
-            if (!this.keeper) {  // the session before is gone, but what it had is kept
-                const it = await this.stage.loaded();
-                it.digAgain();
-                await this.beginHand(it, newSession(session.name), this.tellDig(it, ""));
-            }
-            throw error;
-        }
+        await this.goOn(session);
     }
-    private async forget(id: string): Promise<void> {
-        if (!(await (await this.keeping).data?.remove(id))) {
-            throw new Error("A tab digs in this sand, so it stays.");
+    /** Removes a kept session, whatever begins meanwhile. */
+    async forget(id: string): Promise<void> {
+        if (await (await this.keeping).data?.remove(id)) {
+            await this.tellSessions();
+        } else {
+            this.stage.tell({ kind: "note", text: "A tab digs in this sand, so it stays." });
         }
-        await this.tellSessions();
     }
 }

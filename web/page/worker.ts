@@ -90,6 +90,9 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     if (beginning) {
         return start(beginning);
     }
+    if ("forget" in data) {
+        return void beginnings.forget(data.forget).catch((error: Error) => tell({ kind: "note", text: `The kept sand cannot be removed: ${error.message || error.name}.` }));
+    }
     if ("look" in data) {
         const place = source && replica!.look(data.look);
         return tell({ kind: "place", place, near: data.near });
