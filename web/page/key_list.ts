@@ -32,7 +32,7 @@ export const kKeys: KeyEntry[] = [
     { action: "onlyInAWindow", keys: ["G", "M", "F", "T"], effect: "only in a window of a wall" },
 ];
 /** Keys of a window that a page leaves to the browser. */
-export const kOfTheBrowser = ["F11", "Ctrl+Q", "Q"];
+export const kOfTheBrowser = ["F11", "Ctrl+Q"];
 
 const kTouches: [string, string][] = [
     ["left button, pen, finger", "digs"],
@@ -54,9 +54,10 @@ export function keyName({ key, code, ctrlKey, metaKey, altKey, shiftKey }: Keybo
     const own = isForeign ? code.slice(3) : names[key] ?? (key.length === 1 ? key.toUpperCase() : key);
     return (ctrlKey || metaKey ? "Ctrl+" : "") + (altKey ? "Alt+" : "") + (shiftKey && /^[A-Z]$/.test(own) ? "Shift+" : "") + own;
 }
-export function findKey(event: KeyboardEvent): { entry: KeyEntry; index: number } | undefined {
+/** Returns the entry of a key, its place there, and whether it acts. A held key acts again only if its entry `repeats`. */
+export function findKey(event: KeyboardEvent): { entry: KeyEntry; index: number; acts: boolean } | undefined {
     const name = keyName(event), entry = kKeys.find(({ keys }) => keys.includes(name));
-    return entry && (!event.repeat || entry.repeats) ? { entry, index: entry.keys.indexOf(name) } : undefined;
+    return entry && { entry, index: entry.keys.indexOf(name), acts: !event.repeat || entry.repeats === true };
 }
 
 /** Returns the help: all touches and keys. */

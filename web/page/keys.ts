@@ -11,13 +11,17 @@ export interface Wheel {
 }
 
 /** Whether an element takes a key itself: a letter that is typed, or Space on a button. */
-function takesKey(target: EventTarget | null, key: string): boolean {
+function takesKey({ target, key, ctrlKey, metaKey }: KeyboardEvent): boolean {
     if (!(target instanceof HTMLElement)) {
         return false;
     }
-    const isField = target.matches("input[type=number], select, textarea, [contenteditable]");
-    const moves = ["Home", "End", "PageUp", "PageDown", "+", "-"].includes(key) && target.matches("input[type=range]");
-    return key !== "Escape" && (isField || moves || (key === " " && target.matches("button, summary, input")));
+    if (ctrlKey || metaKey) {
+        return target.matches("input[type=number]") && /^[yz]$/i.test(key);  // undoes what was typed
+    }
+    const moves = ["Home", "End", "PageUp", "PageDown"].includes(key);
+    return (target.matches("input[type=number], select") && (key.length === 1 || moves))
+        || (target.matches("input[type=range]") && (moves || key === "+" || key === "-"))
+        || (key === " " && target.matches("button, summary, input"));
 }
 
 export class Keys {
@@ -27,9 +31,11 @@ export class Keys {
         document.addEventListener("keydown", (event) => {
             this.controlIsDown = event.ctrlKey;
             const found = findKey(event);
-            if (found && !takesKey(event.target, event.key)) {
-                event.preventDefault();
-                act(found.entry.action, found.index);
+            if (found && !takesKey(event)) {
+                event.preventDefault();  // also of a held key, which the browser would take otherwise
+                if (found.acts) {
+                    act(found.entry.action, found.index);
+                }
             }
         });
         document.addEventListener("keyup", (event) => { this.controlIsDown = event.ctrlKey; });

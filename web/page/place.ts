@@ -7,22 +7,30 @@ const shown = document.getElementById("height")!;
 
 export class PlaceUnderPointer {
     private waits = false;  // for the worker's answer
+    private next?: [number, number];  // place in the window that the pointer has reached meanwhile
     private cell = 1;       // scene unit
 
     constructor(canvas: HTMLCanvasElement, private readonly view: View, private readonly tell: (message: ToWorker) => void) {
         canvas.addEventListener("pointermove", ({ clientX, clientY }) => this.look(clientX, clientY, false));
-        canvas.addEventListener("pointerleave", () => { shown.textContent = ""; });
+        canvas.addEventListener("pointerleave", () => {
+            this.next = undefined;
+            shown.textContent = "";
+        });
     }
 
     begin(cell: number): void {
         this.cell = cell;
         this.waits = false;
+        this.next = undefined;
         shown.textContent = "";
     }
     /** Asks for the place at a place in the window, and goes near to it if `near`. */
     look(clientX: number, clientY: number, near: boolean): void {
-        if (this.view.ready && (near || !this.waits)) {
+        if (this.waits && !near) {
+            this.next = [clientX, clientY];
+        } else if (this.view.ready) {
             this.waits = true;
+            this.next = undefined;
             this.tell({ look: this.view.sightThrough(clientX, clientY), near });
         }
     }
@@ -33,6 +41,9 @@ export class PlaceUnderPointer {
         document.body.dataset.height = shown.textContent;
         if (near && place) {
             this.view.goNear(place[0], place[1], place[3]);
+        }
+        if (this.next) {
+            this.look(...this.next, false);
         }
     }
 }
