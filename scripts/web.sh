@@ -26,7 +26,7 @@ build_replica() (
     fi
     # Debian's emscripten finds its JavaScript parser here.
     export NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
-    emcmake cmake -S . -B build/web -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON "${launcher[@]}" >/dev/null
+    emcmake cmake -S . -B build/web -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 "${launcher[@]}" >/dev/null
     cmake --build build/web --parallel "$(nproc)" --target replica
 )
 

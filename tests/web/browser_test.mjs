@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opens sessions in a browser, and compares what the page has counted and computed with what the native program wrote.
-// usage: node tests/web/browser_test.mjs chromium|firefox FOLDER LIST [--smoke]
-// LIST is what session_files has printed, with the sessions in FOLDER. With --smoke it opens two of them.
+// usage: node tests/web/browser_test.mjs chromium|firefox FOLDER LIST
+// LIST is what session_files has printed, with the sessions in FOLDER.
 // tests/web/browser_test.sh calls this script.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
 import { complaintsOf, launch, passed, press, serve } from "./browser.mjs";
 
-const [name, folder, list, smoke] = process.argv.slice(2);
-const sessions = fs.readFileSync(list, "utf8").trim().split("\n").map((line) => line.split(" ")).filter(([file]) => !smoke || /^(gis_tin|every_tool)/.test(file));
+const [name, folder, list] = process.argv.slice(2);
+const sessions = fs.readFileSync(list, "utf8").trim().split("\n").map((line) => line.split(" "));
 const browser = await launch(name);
 
 /** Opens one session, and returns the page. */

@@ -48,12 +48,10 @@ if [[ ${3:-} == --pictures ]]; then
     node scripts/figures/web_pictures.mjs "$folder/pictures" "$folder"/*.journal
     exit
 fi
-"$2" "$folder" >"$folder/list"
-if [[ ${3:-} == --all ]]; then
-    "${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list"
-else
-    "${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list" --smoke
-fi
+what=(browser)
+[[ ${3:-} == --all ]] && what=()
+"$2" "$folder" "${what[@]}" >"$folder/list"
+"${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list"
 if [[ $browser == chromium ]]; then
     node tests/web/no_picture_test.mjs "$folder/gis_tin.journal"
     node tests/web/touch_in_browser.mjs "$folder/gis_tin.journal"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes sessions for the test of the page's replica: the sample scenes, rock with walls, and every tool and edit.
-// usage: session_files FOLDER [pictures|times|hour]. Prints a line for each: FILE PARTS STEPS HASHES HASH.
-// `pictures` writes a few short sessions, whose last pictures scripts/figures/web_pictures.mjs compares. `times` and
-// `hour` write the longer sessions of scripts/figures/web_times.mjs.
+// usage: session_files FOLDER [browser|pictures|times|hour]. Prints a line for each: FILE PARTS STEPS HASHES HASH.
+// `browser` writes those of them that the test in browsers opens. `pictures` writes a few short sessions, whose last
+// pictures scripts/figures/web_pictures.mjs compares. `times` and `hour` write the longer sessions of
+// scripts/figures/web_times.mjs.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -264,11 +265,17 @@ void longSession(const std::string& name, const std::string& file, double radius
 
 int main(int count, char** arguments) {
     const std::string what = count == 3 ? arguments[2] : "";
-    if (count < 2 || count > 3 || (count == 3 && what != "pictures" && what != "times" && what != "hour")) {
-        fmt::print(stderr, "usage: session_files FOLDER [pictures|times|hour]\n");
+    if (count < 2 || count > 3 ||
+        (count == 3 && what != "browser" && what != "pictures" && what != "times" && what != "hour")) {
+        fmt::print(stderr, "usage: session_files FOLDER [browser|pictures|times|hour]\n");
         return 2;
     }
     const std::filesystem::path folder = arguments[1];
+    if (what == "browser") {
+        sampleScene("gis_tin", folder);
+        everyTool(folder);
+        return 0;
+    }
     if (what == "pictures") {
         forPictures(folder);
         return 0;

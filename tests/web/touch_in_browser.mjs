@@ -46,7 +46,7 @@ async function pen(track) {
     await send("mouseReleased", last, 0);
 }
 /** Returns a straight way in some steps. */
-const way = (from, to, parts = 8) => Array.from({ length: parts + 1 }, (_, i) => from.map((n, k) => n + (to[k] - n) * i / parts));
+const way = (from, to, parts = 5) => Array.from({ length: parts + 1 }, (_, i) => from.map((n, k) => n + (to[k] - n) * i / parts));
 
 /** The eye: the place that it looks at, and direction and distance from there. */
 async function eye() {
@@ -126,7 +126,8 @@ async function whileDigging() {
     // A small field, which is drawn quickly also in software.
     const folder = fs.mkdtempSync(path.join(os.tmpdir(), "touch-")), grid = path.join(folder, "flat.asc");
     fs.writeFileSync(grid, `ncols 60\nnrows 60\nxllcorner 4000\nyllcorner 5000\ncellsize 1\n${"0 ".repeat(3600)}\n`);
-    await page.goto(new URL(address).origin);
+    await page.goto(`${new URL(address).origin}/?dig=none`);
+    await page.waitForSelector("#files");
     await (await page.$("#files")).uploadFile(grid);
     await until("document.body.dataset.digging && document.body.dataset.view && document.body.dataset.step");
     fs.rmSync(folder, { recursive: true });
