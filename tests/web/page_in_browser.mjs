@@ -46,6 +46,13 @@ async function eye() {
     return { target, far: Math.hypot(...numbers.slice(0, 3).map((n, i) => n - target[i])) };
 }
 
+/** Returns what of a section is cut off. */
+const cut = (within) => page.evaluate((section) => [...document.querySelectorAll(section)].filter((it) => it.getClientRects().length > 0).filter((it) => {
+    it.scrollIntoView({ block: "nearest" });
+    const { left, right, top, bottom } = it.getBoundingClientRect();
+    return left < -1 || right > innerWidth + 1 || top < -1 || bottom > innerHeight + 1 || (it.matches("button") && it.scrollWidth > it.clientWidth + 1);
+}).map((it) => it.id || it.textContent), within);
+
 /** The page opens with dunes, an invitation and three pictures. The first touch ends the invitation. */
 async function firstScreen() {
     const began = performance.now();
@@ -55,6 +62,11 @@ async function firstScreen() {
     await digs("dunes");
     const seen = (id) => page.$eval(id, (it) => getComputedStyle(it).display !== "none");
     assert.deepEqual([await seen("#ghost"), await seen("#scenes")], [true, true]);
+    assert.equal((await data()).tool, "no", "nobody points, so no tool lies at the corner of the box");
+    for (const width of [195, 800]) {  // a phone at 200 %
+        await page.setViewport({ width, height: 600 });
+        assert.deepEqual(await cut("#scenes button, #say, #row *, #full"), [], `${width} pixels`);
+    }
     assert.equal((await page.$$("#scenes button")).length, 3);
     assert.deepEqual([(await data()).unkept, (await data()).keptSessions, await canUndo()], ["false", "0", false], "the invitation digs nothing");
     await page.click("#scenes button:nth-child(3)");
@@ -67,6 +79,7 @@ async function firstScreen() {
     await page.keyboard.press("0");
     await until("document.getElementById('size').textContent === 'Radius 0.0400'");
     await page.mouse.click(...await at(0.5, 0.5));
+    await until("document.body.dataset.tool === 'yes'");
     assert.deepEqual([await seen("#ghost"), await seen("#scenes")], [false, false]);
     await (await page.$("#files")).uploadFile(grid);
     await digs("flat");
@@ -74,12 +87,7 @@ async function firstScreen() {
 
 /** Sand has at least 60 % of each screen. Nothing is cut, in the row, in the drawer and in the help. */
 async function sizes() {
-    const kSizes = [[320, 480, 1], [390, 844, 1], [640, 360, 1], [1280, 720, 1], [1920, 1080, 1], [640, 360, 2], [320, 240, 2]];  // the last two: at 200 %
-    const cut = (within) => page.evaluate((section) => [...document.querySelectorAll(section)].filter((it) => it.getClientRects().length > 0).filter((it) => {
-        it.scrollIntoView({ block: "nearest" });
-        const { left, right, top, bottom } = it.getBoundingClientRect();
-        return left < -1 || right > innerWidth + 1 || top < -1 || bottom > innerHeight + 1 || (it.matches("button") && it.scrollWidth > it.clientWidth + 1);
-    }).map((it) => it.id || it.textContent), within);
+    const kSizes = [[320, 480, 1], [390, 844, 1], [640, 360, 1], [1280, 720, 1], [1920, 1080, 1], [640, 360, 2], [195, 422, 2], [320, 240, 2]];  // the last three: at 200 %
     for (const [width, height, deviceScaleFactor] of kSizes) {
         const size = `${width} x ${height} at ${deviceScaleFactor}`;
         await page.setViewport({ width, height, deviceScaleFactor });

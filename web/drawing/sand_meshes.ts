@@ -52,6 +52,7 @@ export class SandMeshes {
     private readonly sand: Mesh;
     private readonly solids: Record<string, Mesh>;
     private grain?: DataTexture;
+    private toolIsWanted = true;
 
     /** Adds the meshes of a session to `scene`. The first pieces that show() gets have all of them. */
     constructor(scene: Scene, { columns, rows, cell, middle }: SandMessage) {
@@ -70,6 +71,13 @@ export class SandMeshes {
         this.programs.dispose();
         this.grain?.dispose();
     }
+
+    /** Shows the tool, or hides it. */
+    showTool(on: boolean): void {
+        this.toolIsWanted = on;
+        this.solids.tool.visible = on && this.model.w > 0;
+    }
+    get showsTool(): boolean { return this.solids.tool.visible; }
 
     show(pieces: Piece[]): void {
         pieces.forEach((piece) => this.take(piece));
@@ -99,7 +107,7 @@ export class SandMeshes {
         }
         if (piece.uModel) {
             this.model.fromArray(piece.uModel as Float32Array);
-            this.solids.tool.visible = this.model.w > 0;
+            this.showTool(this.toolIsWanted);
             this.programs.make(piece.ball[0] === 1);
         }
     }

@@ -12,6 +12,7 @@ export class View {
     private session?: SandMessage;
     private meshes?: SandMeshes;
     private dirty = true;
+    private digs = false;
 
     /** Throws if the browser has no WebGL 2. `drawn` is called after each picture. */
     constructor(private readonly canvas: HTMLCanvasElement, private readonly drawn: () => void) {
@@ -41,6 +42,7 @@ export class View {
         this.meshes?.dispose();
         this.session = session;
         this.meshes = new SandMeshes(this.scene, session);
+        this.meshes.showTool(!this.digs);  // a hand that has not pointed yet has no place
         const [red, green, blue] = frame.pieces.find((piece) => piece.background)!.background;
         this.scene.background = new Color().setRGB(red, green, blue, LinearSRGBColorSpace);
         this.eye.begin(kTray * Math.min(1, session.columns / session.rows), kTray * Math.min(1, session.rows / session.columns));
@@ -52,6 +54,19 @@ export class View {
         this.meshes!.show(frame.pieces);
         this.dirty = true;
     }
+    /** Whether the hand of the page digs in the sand that begins next. */
+    set digging(on: boolean) {
+        this.digs = on;
+        this.eye.digging = on;
+    }
+    /** Shows the tool of a hand, which now points at a place. */
+    showTool(): void {
+        if (this.meshes && !this.meshes.showsTool) {
+            this.meshes.showTool(true);
+            this.dirty = true;
+        }
+    }
+    get showsTool(): boolean { return this.meshes?.showsTool ?? false; }
     set cutAndFill(on: boolean) {
         this.meshes!.programs.set("uCutAndFill", on ? 1 : 0);
         this.dirty = true;

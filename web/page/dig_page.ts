@@ -20,6 +20,7 @@ export interface Page {
 // The words of a session's last line (scripts/launcher/resume_command.py), for a folder that the person makes.
 const kContinues = "Put it into a folder of its own, such as out/dug. `scripts/sandwall run --resume --out out/dug --wall walls/configs/desktop.toml "
     + "--device pointer` continues with this sand.";
+const kHasFingers = matchMedia("(pointer: coarse)").matches;
 const numbers = document.getElementById("numbers")!;
 
 export class DigPage {
@@ -36,7 +37,11 @@ export class DigPage {
         this.kept = new KeptList((message) => page.tell(message));
         this.panel = new DigPanel((message) => page.tell(message), (scene) => this.open(scene), () => this.again());
         if (view) {
-            this.pointer = new DigPointer(canvas, view, (readings) => page.tell({ hand: readings }, [readings.buffer]), () => this.sand !== undefined && view.shows(this.sand), (x, y) => near(x, y));
+            const send = (readings: Float64Array) => {
+                view.showTool();
+                page.tell({ hand: readings }, [readings.buffer]);
+            };
+            this.pointer = new DigPointer(canvas, view, send, () => this.sand !== undefined && view.shows(this.sand), (x, y) => near(x, y));
         }
     }
 
@@ -66,11 +71,12 @@ export class DigPage {
         }
         Object.assign(document.body.dataset, { digging: opened.name, hand: "no" });
         if (this.view) {
-            this.view.eye.digging = true;
+            this.view.digging = true;
         }
         this.paused = this.ready = false;
         const since = opened.since === undefined ? "" : `This is your sand of ${timeOf(opened.since)}. "New sand" in "More" begins anew, and this sand stays.`;
-        this.greeting = [opened.note, since, `${opened.name}: draw with a finger or the left button. H shows all keys.`,
+        const how = kHasFingers ? 'draw with a finger. "Help" is in "More".' : "draw with the left button. H shows all keys.";
+        this.greeting = [opened.note, since, `${opened.name}: ${how}`,
                          opened.shortcoming, this.noPicture].filter((part) => part !== "").join(" ");
     }
     private beginHand({ step, hash }: HandMessage): void {
@@ -89,7 +95,7 @@ export class DigPage {
         delete document.body.dataset.digging;
         delete document.body.dataset.hand;
         if (this.view) {
-            this.view.eye.digging = false;
+            this.view.digging = false;
         }
     }
 

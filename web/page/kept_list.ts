@@ -8,6 +8,12 @@ const element = <T extends HTMLElement>(id: string) => document.getElementById(i
 const list = element<HTMLSelectElement>("kept"), goOn = element<HTMLButtonElement>("goOn"), forget = element<HTMLButtonElement>("forget");
 const kMine = "sandwall session";  // key of the session that this tab had last
 
+/** Returns when a session was dug last, as short as a list on a phone needs it. */
+function shortTimeOf(ms: number): string {
+    const then = new Date(ms), day = then.getFullYear() === new Date().getFullYear() ? { month: "short", day: "numeric" } as const : { dateStyle: "medium" } as const;
+    return `${then.toLocaleDateString(undefined, day)}, ${then.toLocaleTimeString(undefined, { timeStyle: "short" })}`;
+}
+
 export class KeptList {
     private unkept = false;
     private why = "";       // why sand is not kept; empty if it is
@@ -62,8 +68,7 @@ export class KeptList {
     show({ sessions, current }: SessionsMessage): void {
         const chosen = list.value;
         list.replaceChildren(...sessions.map(({ id, name, changed, seconds }) => {
-            const mark = id === current ? ", this sand" : "";
-            return new Option(`${name}, ${timeOf(changed)}, ${seconds} s${mark}`, id);
+            return new Option(`${name}, ${id === current ? "this sand" : shortTimeOf(changed)}, ${seconds} s`, id);
         }));
         if (sessions.length === 0) {
             list.append(new Option("none yet", ""));

@@ -34,7 +34,7 @@ let view: View | undefined;
 let noPicture = "";
 try {
     view = new View(canvas, () => {
-        document.body.dataset.view = textOfEye(view!);
+        Object.assign(document.body.dataset, { view: textOfEye(view!), tool: view!.showsTool ? "yes" : "no" });
         tell({ shown: true });
     });
     const eye = eyeOfAddress();
