@@ -20,7 +20,7 @@ class Replica {
     rests = true;
     settlesNext = false;
     canUndo = false;
-    material = {};
+    materialText = "{}";
     words = {};
     sceneMaterial = {};
     get hash() { return `hash ${this.step}`; }

@@ -12,7 +12,7 @@ class Replica {
     rests = true;
     settlesNext = false;
     canUndo = false;
-    material = {};
+    materialText = "{}";
     hash = "";
     point(numbers) {
         for (let i = 0; i < numbers.length; i += 8) {
@@ -83,5 +83,14 @@ function begun() {
     source.take({ of: "size", notches: -2 });
     source.take({ enlarge: true });
     assert.deepEqual([asked, materials() - before], [[["size", -2], "enlarge"], 2]);
+}
+{   // So is a material that a step has changed, such as an undo.
+    const { replica, told, source } = begun();
+    for (const text of ["{}", '{"tool":1}', '{"tool":1}']) {
+        replica.materialText = text;
+        pass(200);
+        source.work();
+    }
+    assert.deepEqual(told.filter(({ kind }) => kind === "material"), [{ kind: "material" }, { kind: "material", tool: 1 }]);
 }
 console.log("the hand rests, pauses and changes the tool");

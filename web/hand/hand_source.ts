@@ -111,13 +111,13 @@ export class HandSource implements StepSource {
     }
 
     private tellMaterial(): void {
-        this.toldMaterial = JSON.stringify(this.replica.material);
-        this.stage.tell({ kind: "material", ...this.replica.material });
+        this.toldMaterial = this.replica.materialText;
+        this.stage.tell({ kind: "material", ...JSON.parse(this.toldMaterial) });
     }
     private tellStep(busy: string): void {
         this.told = performance.now();
         this.toldStep = this.replica.step;
-        if (JSON.stringify(this.replica.material) !== this.toldMaterial) {  // an undo or a redo has changed it
+        if (this.replica.materialText !== this.toldMaterial) {  // an undo or a redo has changed it
             this.tellMaterial();
         }
         this.stage.tell({ kind: "dug", step: this.toldStep, hash: this.replica.hash, undo: this.replica.canUndo, busy });

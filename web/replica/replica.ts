@@ -138,7 +138,8 @@ export class Replica {
     digOn(): boolean { return this.require(this.wasm._sw_dig_on()) === 1; }
     get settlesNext(): boolean { return this.wasm._sw_settles_next() === 1; }
     get words(): Words { return this.json(this.wasm._sw_words()); }
-    get material() { return this.json(this.wasm._sw_material()); }
+    /** The material with all changes that were asked for, as JSON. */
+    get materialText(): string { return this.text(this.wasm._sw_material()); }
     get sceneMaterial() { return this.json(this.wasm._sw_scene_material()); }
     get canUndo(): boolean { return this.wasm._sw_can_undo() === 1; }
     ask(edit: string): void { this.withText(edit, (at) => this.wasm._sw_ask(at)); }
