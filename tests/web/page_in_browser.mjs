@@ -167,7 +167,9 @@ async function keys() {
     };
     await page.keyboard.press("Space");
     await until("/^Paused/.test(document.getElementById('say').textContent)");
-    await turn();
+    for (let i = 0; i < 3; ++i) {
+        await turn();  // the worker has told the last step then
+    }
     const { step } = await data();
     await drag([0.3, 0.7], [0.7, 0.7]);
     for (let i = 0; i < 6; ++i) {
