@@ -6,52 +6,14 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { complaintsOf, launch, press, serve } from "./browser.mjs";
+import { controlsOf } from "./page_controls.mjs";
 
 const [pictures] = process.argv.slice(2);
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "page-")), grid = path.join(folder, "flat.asc");
 fs.writeFileSync(grid, `ncols 60\nnrows 60\nxllcorner 4000\nyllcorner 5000\ncellsize 1\n${"0 ".repeat(3600)}\n`);
 const { address, end } = await serve(), browser = await launch("chromium");
 const page = await browser.newPage(), complaints = complaintsOf(page, address);
-const until = (condition) => page.waitForFunction(condition, { timeout: 120_000, polling: 50 });
-const data = () => page.evaluate(() => ({ ...document.body.dataset }));
-const value = (id) => page.$eval(id, (control) => control.value || control.textContent);
-const canUndo = () => page.$eval("#undo", (button) => !button.disabled);
-const digs = (name) => until(`document.body.dataset.digging === "${name}" && document.body.dataset.hand === "yes" && document.body.dataset.shown && document.body.dataset.step > 2`);
-async function steps(count) {
-    const step = Number((await data()).step ?? 0) + count;
-    await until(`Number(document.body.dataset.step) >= ${step}`);
-}
-/** Returns the window's place of a place in shares of the canvas. */
-async function at(u, v) {
-    const { x, y, width, height } = await (await page.$("#sand")).boundingBox();
-    return [x + u * width, y + v * height];
-}
-async function drag(from, to) {
-    await page.mouse.move(...await at(...from));
-    await page.mouse.down();
-    await page.mouse.move(...await at(...to), { steps: 5 });
-    await page.mouse.up();
-}
-/** Returns what the page says of the height at a place in shares of the canvas. */
-async function heightAt(u, v) {
-    await page.mouse.move(...await at(0.02, 0.5));  // beside the sand there is no height
-    await until("document.body.dataset.height === ''");
-    await page.mouse.move(...await at(u, v));
-    await until("document.body.dataset.height !== ''");
-    return (await data()).height;
-}
-async function eye() {
-    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-    const numbers = (await data()).view.split(",").map(Number), target = numbers.slice(3);
-    return { target, far: Math.hypot(...numbers.slice(0, 3).map((n, i) => n - target[i])) };
-}
-
-/** Returns what of a section is cut off. */
-const cut = (within) => page.evaluate((section) => [...document.querySelectorAll(section)].filter((it) => it.getClientRects().length > 0).filter((it) => {
-    it.scrollIntoView({ block: "nearest" });
-    const { left, right, top, bottom } = it.getBoundingClientRect();
-    return left < -1 || right > innerWidth + 1 || top < -1 || bottom > innerHeight + 1 || (it.matches("button") && it.scrollWidth > it.clientWidth + 1);
-}).map((it) => it.id || it.textContent), within);
+const { until, data, value, canUndo, digs, steps, at, drag, heightAt, eye, cut } = controlsOf(page);
 
 /** The page opens with dunes, an invitation and three pictures. The first touch ends the invitation. */
 async function firstScreen() {

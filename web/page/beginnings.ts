@@ -7,28 +7,14 @@ import { JournalSource } from "../replica/journal_source";
 import { Keyframes } from "../replica/keyframes";
 import type { DigMessage, OpenMessage, StartMessage, ToWorker } from "../replica/messages";
 import type { Replica } from "../replica/replica";
-import { kSliceMs, type Stage, type StepSource } from "../replica/step_source";
-import { fetchSandwallFile } from "./fetched";
-
-const kReturnMs = 500;  // between two notes about sand that is computed again
+import type { Stage, StepSource } from "../replica/step_source";
+import { computeKept, newSession, sceneNamed } from "./sessions";
 
 /** What beginnings use of the worker. */
 export interface BeginningStage extends Stage {
     /** Other sand is shown from now on. Its steps come from `next`; without it, nothing works. */
     begin(next?: StepSource): void;
     loaded(): Promise<Replica>;
-}
-
-function newSession(name: string): KeptSession {
-    const id = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
-    return { id, name, began: Date.now(), changed: Date.now(), seconds: 0 };
-}
-async function sceneNamed(name: string): Promise<ArrayBuffer> {
-    const fetched = await fetchSandwallFile(new URL(`${encodeURIComponent(name)}.scene`, self.location.href)).catch(({ message }: Error) => ({ why: message }));
-    if ("why" in fetched) {
-        throw new Error(`${name}: cannot be fetched (${fetched.why}); build the page again`);
-    }
-    return fetched.bytes;
 }
 
 /** Ends a beginning, because the person has chosen other sand meanwhile. */
@@ -181,23 +167,6 @@ export class Beginnings {
         await this.beginHand(it, newSession(it.session().name), this.tellDig(it, ""));
     }
 
-    /** Computes the sand of a kept journal in slices. */
-    private async compute(it: Replica, { name, seconds }: KeptSession, stepsPerSecond: number): Promise<void> {
-        for (let told = performance.now(); ; ) {
-            const began = performance.now();
-            while (performance.now() - began < kSliceMs) {
-                if (!it.returnOn()) {
-                    return;
-                }
-            }
-            if (began - told > kReturnMs) {
-                told = began;
-                this.stage.tell({ kind: "note", text: `Computing your sand of ${name} again: ${Math.floor(it.step / stepsPerSecond)} of ${seconds} s.` });
-            }
-            await new Promise((resolve) => setTimeout(resolve));
-            this.goOnIfNewest();
-        }
-    }
     /** Goes on with a kept session. Throws a sentence if another tab has it, or if it cannot be read. */
     private async goOn({ id, name }: KeptSession): Promise<void> {
         const it = await this.stage.loaded(), data = (await this.keeping).data!;
@@ -211,7 +180,7 @@ export class Beginnings {
             this.end();
             stepsPerSecond = this.tellDig(it, "", session.changed);
             this.stage.show();  // the sand of the scene, of which the page makes the box and the difference to the start
-            await this.compute(it, session, stepsPerSecond);
+            await computeKept(it, session, stepsPerSecond, (text) => this.stage.tell({ kind: "note", text }), () => this.goOnIfNewest());
         };
         let kept: { session: KeptSession; bytes: ArrayBuffer };
         try {
