@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/field_forms.hpp"
 #include "sand/grid/tile_grid.hpp"
@@ -35,30 +36,67 @@ std::shared_ptr<const PackedCells> copyOf(const CellArray& grid, const CellRect&
     return copy.isZero() ? nullptr : std::make_shared<const PackedCells>(std::move(copy));
 }
 
-/// Throws unless `flux` is 0, or `flows` and at most `most`. `way` and `cell` name the face.
-void requirePossible(std::int32_t flux, bool flows, std::int32_t most, const char* way, const CellRect& cell) {
-    if (flux == 0 || (flows && flux >= -most && flux <= most)) {
-        return;
-    }
+enum class Way : std::uint8_t { east, north };
+
+/// Throws because of a flux that no sweep makes. `flows` says whether sand flows there at all.
+[[noreturn]] void refuse(std::int32_t flux, bool flows, std::int32_t most, const char* way, int x, int y) {
     const std::string which = "sand with a flux of " + std::to_string(flux) + " to the " + way + " from column " +
-                              std::to_string(cell.x0) + ", row " + std::to_string(cell.y0);
+                              std::to_string(x) + ", row " + std::to_string(y);
     throw base::FormatError(which + (flows ? ": the most is " + std::to_string(most)
                                            : ": no sand flows there, because the rim of this field is closed"));
 }
 
-/// Throws if a flux is one that no sweep makes.
-void requirePossible(const CellArray& east, const CellArray& north, const FieldFaces& faces) {
-    const CellRect all = withRim(faces.columns, faces.rows);
+/// Throws if a flux of row `y` is one that no sweep makes. `row` begins at column -1.
+void requirePossible(const std::vector<std::int32_t>& row, int y, Way way, const FieldFaces& faces) {
     const bool open = faces.rim == Rim::open;
-    for (int y = all.y0; y < all.y1; ++y) {
-        for (int x = all.x0; x < all.x1; ++x) {
-            const CellRect cell{x, y, x + 1, y + 1};
-            const bool insideEast = x >= 0 && x + 1 < faces.columns, insideNorth = y >= 0 && y + 1 < faces.rows;
-            requirePossible(east.row(y)[x], y >= 0 && (open || insideEast), faces.mostFlux(), "east", cell);
-            requirePossible(north.row(y)[x], x >= 0 && (open || insideNorth), faces.mostFlux(), "north", cell);
+    for (int x = -1; x < faces.columns; ++x) {
+        const std::int32_t flux = row[static_cast<std::size_t>(x + 1)];
+        if (flux == 0) {
+            continue;
+        }
+        const bool flows = way == Way::east ? y >= 0 && (open || (x >= 0 && x + 1 < faces.columns))
+                                            : x >= 0 && (open || (y >= 0 && y + 1 < faces.rows));
+        if (!flows || flux < -faces.mostFlux() || flux > faces.mostFlux()) {
+            refuse(flux, flows, faces.mostFlux(), way == Way::east ? "east" : "north", x, y);
         }
     }
 }
+
+/// The pieces of a field with its rim, row by row from the south-west, and which of them have fluxes.
+class Pieces {
+public:
+    explicit Pieces(const CellRect& all)
+        : all_(all),
+          across_((all.x1 - all.x0 + kPiece - 1) / kPiece),
+          flows_(static_cast<std::size_t>(across_ * ((all.y1 - all.y0 + kPiece - 1) / kPiece))) {}
+
+    /// Copies the parts of a row that have fluxes into `fluxes`. The pages of the others are not touched.
+    void take(const std::vector<std::int32_t>& row, int y, CellArray& fluxes) {
+        const std::size_t first = static_cast<std::size_t>((y - all_.y0) / kPiece * across_);
+        for (int i = 0; i < across_; ++i) {
+            const int from = i * kPiece, end = std::min(from + kPiece, all_.x1 - all_.x0);
+            if (std::any_of(row.begin() + from, row.begin() + end, [](std::int32_t flux) { return flux != 0; })) {
+                std::copy(row.begin() + from, row.begin() + end, fluxes.row(y) + all_.x0 + from);
+                flows_[first + static_cast<std::size_t>(i)] = true;
+            }
+        }
+    }
+    template <class Visit>
+    void visitFlowing(const Visit& visit) const {
+        for (std::size_t i = 0; i < flows_.size(); ++i) {
+            if (flows_[i]) {
+                const int x = all_.x0 + static_cast<int>(i) % across_ * kPiece;
+                const int y = all_.y0 + static_cast<int>(i) / across_ * kPiece;
+                visit(CellRect{x, y, x + kPiece, y + kPiece}.clippedTo(all_));
+            }
+        }
+    }
+
+private:
+    CellRect all_;
+    int across_;
+    std::vector<bool> flows_;
+};
 
 }  // namespace
 
@@ -128,17 +166,18 @@ Inertia Inertia::decode(base::ByteReader& reader, const FieldFaces& faces,
     const auto head = base::read<Head>(reader);
     Inertia inertia(head.undisturbed);
     if (head.flows) {
-        CellArray east(faces.columns, faces.rows);
-        CellArray north(faces.columns, faces.rows);
         const CellRect all = withRim(faces.columns, faces.rows);
-        decodeCells(reader, all, kMaxHeight, east, decoded);
-        decodeCells(reader, all, kMaxHeight, north, decoded);
-        requirePossible(east, north, faces);
-        for (int y = all.y0; y < all.y1; y += kPiece) {
-            for (int x = all.x0; x < all.x1; x += kPiece) {
-                inertia.keep(east, north, CellRect{x, y, x + kPiece, y + kPiece}.clippedTo(all));
-            }
+        CellArray east(faces.columns, faces.rows), north(faces.columns, faces.rows);
+        std::vector<std::int32_t> row(static_cast<std::size_t>(all.x1 - all.x0));
+        Pieces pieces(all);
+        for (const Way way : {Way::east, Way::north}) {
+            const auto done = [&](int y) {
+                requirePossible(row, y, way, faces);
+                pieces.take(row, y, way == Way::east ? east : north);
+            };
+            decodeRows(reader, all, kMaxHeight, {[&](int) { return row.data(); }, done}, decoded);
         }
+        pieces.visitFlowing([&](const CellRect& cells) { inertia.keep(east, north, cells); });
     }
     return inertia;
 }

@@ -133,24 +133,32 @@ std::size_t stripesOf(const CellRect& cells) {
     return (rows + each - 1) / each;
 }
 
-void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid,
-                 const std::function<void(std::size_t)>& decoded) {
+void decodeRows(base::ByteReader& reader, const CellRect& cells, std::int32_t most, const RowsToDecode& take,
+                const std::function<void(std::size_t)>& decoded) {
     requireCells(reader, countOf(cells));
     Unpacker unpacker(reader.getBlock());
     const int across = cells.x1 - cells.x0;
     const int rows = static_cast<int>(std::max<std::size_t>(kStripe / static_cast<std::size_t>(across), 1));
     std::size_t noted = 0;  // packed bytes that `decoded` knows
     for (int y = cells.y0; y < cells.y1; ++y) {
-        std::int32_t* const row = grid.row(y) + cells.x0;
+        std::int32_t* const row = take.rowOf(y);
         unpacker.read(row, static_cast<std::size_t>(across));
         if (std::any_of(row, row + across, [most](std::int32_t n) { return n > most || n < -most; })) {
             throw base::FormatError("a number out of range in a grid");
+        }
+        if (take.done) {
+            take.done(y);
         }
         if (decoded && (y + 1 == cells.y1 || (y + 1 - cells.y0) % rows == 0)) {
             decoded(unpacker.bytes() - std::exchange(noted, unpacker.bytes()));
         }
     }
     unpacker.finish();
+}
+
+void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid,
+                 const std::function<void(std::size_t)>& decoded) {
+    decodeRows(reader, cells, most, {[&](int y) { return grid.row(y) + cells.x0; }}, decoded);
 }
 
 }  // namespace sand

@@ -36,6 +36,15 @@ void encodePacked(const base::Bytes& packed, base::ByteWriter& writer);
 /// the size of a grid from outside calls it before it makes the grid.
 void requireCells(base::ByteReader reader, std::size_t cells);
 
+/// The rows of a grid that decodeRows() reads.
+struct RowsToDecode {
+    std::function<std::int32_t*(int y)> rowOf;  // returns the place for the numbers of a row
+    std::function<void(int y)> done{};          // called when a row has its numbers; may be empty, and may throw
+};
+/// Reads what encodeCells() wrote for `cells`, row by row, as decodeCells() does. The grid need not be in memory.
+void decodeRows(base::ByteReader& reader, const CellRect& cells, std::int32_t most, const RowsToDecode& take,
+                const std::function<void(std::size_t)>& decoded = {});
+
 /// Reads what encodeCells() wrote for the same `cells` of a grid of the same size. Throws base::FormatError for other
 /// bytes, or if a number is beyond ±`most`; `cells` then have unspecified numbers. Also reads one frame of all rows, as
 /// earlier builds wrote it. Calls `decoded` after each stripe, unless it is empty, with the number of packed bytes that
