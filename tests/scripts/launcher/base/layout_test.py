@@ -98,6 +98,10 @@ class InstalledTree(LauncherTest):
         self.assertEqual(self.call("check", "smal").stderr,
                          "sandwall: smal: no file and no known name; walls that come with Sandwall: small\n")
 
+    def test_check_writes_a_new_wall_named_before_or_behind_the_option(self):
+        for words in (("mine.toml", "--new", "2x2"), ("mine.toml", "--new=2x2"), ("--new", "2x2", "mine.toml"), ("small", "--new", "2x2")):
+            self.assertEqual(self.call("check", *words).stderr, f"made-up sandwall-check: {' '.join(words)}\n")
+
     def test_ctl_takes_the_journal_of_a_session(self):
         (self.folder / "out").mkdir()
         (self.folder / "out" / "session.journal").write_text("")
