@@ -5,10 +5,11 @@
 #include <array>
 #include <limits>
 
+#include "shapes/box_outline.hpp"
+
 namespace shapes {
 namespace {
 
-constexpr float kThickness = 0.015F;  // of boards and floor [share of the field's longer side]
 constexpr int kQuadsOfRun = 64, kVerticesOfRun = 6 * kQuadsOfRun;
 
 /// Appends a quad a-b-c-d, counter-clockwise from outside; the grain of wood runs along its longest axis.
@@ -53,13 +54,13 @@ SandBox::SandBox(const SandRim& cut, float lowest, double cellSize, sand::Rim ri
         lowestRim = highestRim = lowest;  // no ground reaches the field's edge
     }
     const float length = std::max(cut.field.x, cut.field.y);
-    floor_ = lowest - 0.06F * length;
+    floor_ = lowest - kFloorDepth * length;
     // The boards are a little higher than the sand at the rim, but low enough not to hide mountains.
-    top_ = std::min(highestRim + 0.006F * length, lowestRim + 0.045F * length);
+    top_ = std::min(highestRim + kBoardRise * length, lowestRim + 0.045F * length);
     width_ = double{cut.field.x};
     depth_ = double{cut.field.y};
     hasHoles_ = cut.hasHoles;
-    const double thick = kThickness * std::max(width_, depth_);
+    const double thick = double{kBoardThickness} * std::max(width_, depth_);
     bounds_ = {{-thick, -thick, floor_ - thick}, {width_ + thick, depth_ + thick, top_}};
     makeSides(cut);
     makeBoards(cut, rim);
@@ -114,7 +115,7 @@ void SandBox::makeSides(const SandRim& cut) {
 void SandBox::makeBoards(const SandRim& cut, sand::Rim rim) {
     const float width = cut.field.x;
     const float depth = cut.field.y;
-    const float thick = kThickness * std::max(width, depth);
+    const float thick = kBoardThickness * std::max(width, depth);
     if (rim == sand::Rim::closed) {
         addBlock(boards_, {-thick, -thick, floor_}, {width + thick, 0, top_});
         addBlock(boards_, {-thick, depth, floor_}, {width + thick, depth + thick, top_});

@@ -5,6 +5,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "host/print_line.hpp"
+#include "shapes/box_outline.hpp"
 #include "walls/projection.hpp"
 
 namespace master {
@@ -40,7 +41,10 @@ bool ViewSource::move(const haptic_bridge::PointerReport& report) {
 
 void ViewSource::frame(const sand::HeightSpan& sand) {
     if (desk_) {
-        desk_->frame({{0, 0, sand.lowest * unit_}, {field_.width, field_.height, sand.highest * unit_}});
+        const double lowest = sand.lowest * unit_;
+        floorOf_ = std::min(floorOf_.value_or(lowest), lowest);
+        const shapes::Box box = shapes::boxOutline({field_.width, field_.height}, *floorOf_, sand.highest * unit_);
+        desk_->frame({box.low, box.high});
         place(desk_->sceneToRoom());
     }
 }

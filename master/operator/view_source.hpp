@@ -42,7 +42,9 @@ public:
     /// Moves the view as the pointer of `report` has dragged it, and zooms by its wheel. Returns false if the wheel
     /// turned beyond a limit of the zoom. Requires moves().
     bool move(const haptic_bridge::PointerReport& report);
-    /// Frames the terrain, whose sand has the heights `sand` (walls::DeskView::frame). Ignored unless moves().
+    /// Frames the terrain with its boards and its floor (walls::DeskView::frame). Its sand has the heights `sand`. The
+    /// floor stays below the lowest sand of all calls, because ranks draw it where it was at the start. Ignored unless
+    /// moves().
     void frame(const sand::HeightSpan& sand);
     /// Calls TrackedViewer::separateEyes().
     void separateEyes(double metres) { viewer_.separateEyes(metres); }
@@ -56,6 +58,7 @@ private:
     lockstep::ViewState state_;
     walls::StagedField field_;
     double unit_;                          // [scene unit], size of a height unit
+    std::optional<double> floorOf_;        // [scene unit], lowest sand of all calls of frame()
     std::optional<walls::DeskView> desk_;  // nullopt unless people may move the view
 };
 

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <vector>
 
 #include "tests/support/seed.hpp"
 #include "tests/walls/sample_walls.hpp"
+#include "walls/window_size.hpp"
 
 namespace walls {
 namespace {
@@ -24,21 +26,8 @@ glm::dvec3 roomOf(const DeskView& view, glm::dvec3 place) {
     return glm::dvec3(view.sceneToRoom() * glm::dvec4(place, 1));
 }
 
-/// Expects that the screens together show all corners of the box. The grid's tiles are one rectangle.
 void expectShown(const Wall& wall, const DeskView& view, const TerrainBox& box) {
-    const Wall whole = wholeWall(wall);
-    for (unsigned i = 0; i < 8; ++i) {
-        const glm::dvec3 corner((i & 1U) != 0 ? box.high.x : box.low.x, (i & 2U) != 0 ? box.high.y : box.low.y,
-                                (i & 4U) != 0 ? box.high.z : box.low.z);
-        const glm::dvec2 shown = shownAt(whole, view, corner);
-        for (const double share : {shown.x, shown.y}) {
-            EXPECT_GE(share, -1e-6) << "corner " << i;
-            EXPECT_LE(share, 1 + 1e-6) << "corner " << i;
-        }
-        const View seen = viewOf(whole, whole.tiles.front(), Eye::middle);
-        const glm::dvec4 clip = seen.viewProjection * glm::dvec4(roomOf(view, corner), 1);
-        EXPECT_LE(std::abs(clip.z), clip.w) << "between the clipping planes, corner " << i;
-    }
+    expectShown(wall, view.sceneToRoom(), shapes::Box{box.low, box.high});
 }
 
 TEST(DeskView, BeginsWithTheStageOfTheWallFile) {
@@ -157,6 +146,53 @@ TEST(DeskView, FramesEveryBoxOnEveryDesktop) {
         if (HasFailure()) {
             FAIL() << "wall " << i;
         }
+    }
+}
+
+/// Returns the walls that people may turn, in windows of many shapes.
+std::vector<Wall> desktops() {
+    std::vector<Wall> walls;
+    const Wall desktop = config("desktop.toml");
+    for (const glm::ivec2 window : {glm::ivec2(0), {1920, 1080}, {1024, 768}, {800, 800}, {720, 1280}, {3440, 1440}}) {
+        walls.push_back(shownInWindow(desktop, window));
+    }
+    for (const char* name : {"tiled_3x4.toml", "portable.toml"}) {
+        walls.push_back(loadWallAs((configFolder() / name).string(), "mono"));
+    }
+    return walls;
+}
+
+TEST(DeskView, FramesTheBoxWithItsBoardsInEveryWindow) {
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    std::mt19937 random(seed);
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const std::vector<Wall> walls = desktops();
+    for (int i = 0; i < 400; ++i) {
+        const Wall& wall = walls[static_cast<std::size_t>(i) % walls.size()];
+        ASSERT_TRUE(isDesktop(wall));
+        const StagedField field{between(0.1, 10), between(0.1, 10), between(-5, 5)};
+        const double low = field.referenceZ - between(0, 2);
+        const shapes::Box box =
+            shapes::boxOutline({field.width, field.height}, low, low + between(0, i % 2 == 0 ? 0.1 : 10));
+        DeskView view(wall, field);
+        view.frame({box.low, box.high});
+        expectShown(wall, view.sceneToRoom(), box);
+        if (HasFailure()) {
+            FAIL() << "wall " << i << ", " << wall.name;
+        }
+    }
+}
+
+TEST(DeskView, KeepsTheStageForLevelSandWithItsBoards) {
+    for (const Wall& wall : desktops()) {
+        const StagedField square{2, 2, 0.2};
+        const shapes::Box box = shapes::boxOutline({2, 2}, 0.2, 0.2);
+        DeskView view(wall, square);
+        view.frame({box.low, box.high});
+        EXPECT_EQ(view.orbit(), Orbit{}) << wall.name << ", " << wall.tiles.front().pixels.x;
     }
 }
 

@@ -9,6 +9,7 @@
 
 #include "tests/support/files/folder_test.hpp"
 #include "tests/support/processes/run_program.hpp"
+#include "tests/walls/sample_walls.hpp"
 #include "walls/wall.hpp"
 
 namespace {
@@ -38,7 +39,17 @@ TEST_F(NewWall, ShowsAllCornersOfTheSandWhateverItsGrid) {
         EXPECT_EQ(walls::loadWall(wall).ranks(), tiles);
         EXPECT_EQ(walls::loadWall(wall).name, grid);
         EXPECT_EQ(corners(ran.output), 4) << ran.output;
+        const walls::Wall made = walls::loadWall(wall);
+        walls::expectShown(made, walls::stageToRoom(made.stage, 1, 1, 0), shapes::boxOutline({1, 1}, 0, 0));
         EXPECT_EQ(ran.output.find("warning"), std::string::npos) << ran.output;
+    }
+}
+
+TEST_F(NewWall, TakesTheFileBeforeOrBehindTheOption) {
+    for (const char* words : {"'{}' --new 2x2", "--new 2x2 '{}'", "'{}' --new=2x2"}) {
+        const support::Ran ran = support::runProgram("sandwall-check", fmt::format(fmt::runtime(words), file()));
+        EXPECT_EQ(ran.status, 0) << ran.output;
+        EXPECT_TRUE(std::filesystem::remove(file())) << words;
     }
 }
 

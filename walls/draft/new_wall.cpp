@@ -11,6 +11,7 @@
 
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
+#include "shapes/box_outline.hpp"
 
 namespace walls {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kBezel = 0.004;         // [m]
 constexpr double kMiddle = 1.5;          // [m], height of the wall's middle, if its lower edge is above the floor
 constexpr double kFoot = 0.1;            // [m], lowest lower edge
 constexpr double kBefore = 0.25;         // [m], from the wall to the sand's south edge
-constexpr double kMargin = 0.05;         // [share of the wall] around the sand, at least
+constexpr double kMargin = 0.03;         // [share of the wall] around the box of the sand, at least
 
 /// Numbers of rows and columns of displays.
 struct DisplayGrid {
@@ -60,19 +61,28 @@ struct Table {
     double side, south;  // [m]; height of the south edge
 
     [[nodiscard]] double half() const { return side / 2 / std::numbers::sqrt2; }  // up, and back
+    /// Returns whether the wall shows the whole box around level sand, with its boards.
     [[nodiscard]] bool fits(const Front& wall) const {
-        const double across = side * wall.distance / (wall.distance - kBefore);
-        const double north = wall.shown(south + 2 * half(), kBefore - 2 * half());
-        return across <= (1 - 2 * kMargin) * wall.width && north <= wall.foot + (1 - kMargin) * wall.height;
+        const shapes::Box box = shapes::boxOutline(glm::dvec2(side), 0, 0);
+        return std::ranges::all_of(shapes::cornersOf(box), [&](glm::dvec3 corner) {
+            const double up = (corner.y + corner.z) / std::numbers::sqrt2;
+            const double forward = (corner.z - corner.y) / std::numbers::sqrt2;
+            const double z = kBefore + forward;
+            const double across = std::abs(corner.x - side / 2) * wall.distance / (wall.distance - z);
+            const double share = (wall.shown(south + up, z) - wall.foot) / wall.height;
+            return across <= (0.5 - kMargin) * wall.width && share >= kMargin && share <= 1 - kMargin;
+        });
     }
 };
 
 /// Returns the largest table that the wall shows whole.
 Table tableOn(const Front& wall) {
-    const double lowest = wall.foot + kMargin * wall.height;
-    Table table{wall.width, wall.eyeHeight + (lowest - wall.eyeHeight) * (wall.distance - kBefore) / wall.distance};
+    Table table{wall.width, wall.foot};
     while (!table.fits(wall)) {
-        table.side *= 0.98;
+        table.south += 0.01 * wall.height;
+        if (table.south > wall.foot + wall.height) {
+            table = {table.side * 0.98, wall.foot};
+        }
     }
     return table;
 }

@@ -2,9 +2,14 @@
 // The view that pointers of the windows move.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 
+#include "shapes/box_outline.hpp"
 #include "tests/master/operator/window_desk_fixture.hpp"
+#include "walls/projection.hpp"
 #include "walls/wall.hpp"
 
 namespace {
@@ -86,6 +91,24 @@ TEST_F(MountainDesk, BeginsWithTheWholeTerrainInView) {
     const auto ofTheFile = master::ViewSource(wall_, scene_, {}).at(0).sceneToRoom;
     open(&force_);
     EXPECT_LT(desk_->views().at(0).sceneToRoom[0], ofTheFile[0]) << "smaller than the wall file has it";
+}
+
+TEST_F(MountainDesk, ShowsItsBoardsAlsoWhenAllSandHasRisen) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    const double unit = scene_.terrain.unit(), cell = scene_.terrain.cellSize();
+    const sand::HeightSpan start = sand_.replica().surface().heights();
+    const shapes::Box box = shapes::boxOutline({32 * cell, 24 * cell}, start.lowest * unit, start.highest * unit);
+    open(&force_);
+    // The ranks draw the floor below the lowest sand of the start.
+    for (const int risen : {0, 20}) {
+        desk_->views().frame({start.lowest + risen * sand::kUnitsPerCell, start.highest});
+        const glm::dmat4 toRoom = glm::make_mat4(desk_->views().at(0).sceneToRoom.data());
+        const glm::dmat4 toClip = walls::viewOf(wall_, wall_.tiles.front(), walls::Eye::middle).viewProjection * toRoom;
+        for (const glm::dvec3& corner : shapes::cornersOf(box)) {
+            const glm::dvec4 clip = toClip * glm::dvec4(corner, 1);
+            EXPECT_LE(std::max(std::abs(clip.x), std::abs(clip.y)), clip.w) << corner.x << ", " << corner.y;
+        }
+    }
 }
 
 }  // namespace
