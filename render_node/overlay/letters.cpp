@@ -59,9 +59,14 @@ Sheet::Sheet(glm::ivec2 size, glm::u8vec3 colour)
 }
 
 void Sheet::fill(glm::ivec2 topLeft, glm::ivec2 size, glm::u8vec3 colour) {
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            cover(topLeft + glm::ivec2(x, y), 255, colour);
+    const glm::ivec2 low = glm::clamp(topLeft, glm::ivec2(0), size_);
+    const glm::ivec2 high = glm::clamp(topLeft + size, low, size_);
+    for (int y = low.y; y < high.y; ++y) {
+        std::uint8_t* pixel = rgb_.data() + 3 * (static_cast<std::ptrdiff_t>(y) * size_.x + low.x);
+        for (int x = low.x; x < high.x; ++x) {
+            for (int channel = 0; channel < 3; ++channel) {
+                *pixel++ = colour[channel];
+            }
         }
     }
 }

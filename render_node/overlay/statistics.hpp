@@ -2,27 +2,30 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/pixel_rect.hpp"
 #include "render_node/overlay/flat_painter.hpp"
+#include "render_node/overlay/letters.hpp"
 #include "render_node/overlay/statistics_text.hpp"
+#include "render_node/overlay/text_panel.hpp"
 
 namespace render_node {
 
 /// Place of the statistics on a tile, and the parts of them that fit there.
 struct OverlayLayout {
-    glm::ivec2 at{0}, size{0};  // of the panel, from the top left [pixel]; size 0: the tile is too small for a panel
-    int dot = 1;                // size of a letter's dot [pixel]
-    bool graphs = false;
+    glm::ivec2 at{0}, size{0};   // of the panel, from the top left [pixel]; size 0: the tile is too small for a panel
+    const Face* face = nullptr;  // of the words; null: letters of dots, and no graphs
     int letters = 0, lines = 0;
 
     [[nodiscard]] PixelRect pixels(glm::ivec2 tile) const;
 };
-/// Returns the layout for a tile. The panel is in the upper left corner. Tiles of 337 × 300 pixels or more have words
-/// and graphs; smaller tiles have fewer words and no graphs.
+/// Returns the layout for a tile. The panel is in the upper left corner. Tiles of 349 × 332 pixels or more have words
+/// and graphs in the font of the help. Smaller tiles have fewer words, in letters of 5 × 7 dots, because the smallest
+/// size of the font is larger, and no graphs.
 [[nodiscard]] OverlayLayout overlayLayout(glm::ivec2 tile /* [pixel] */);
 
 /// Panel over a tile's picture that shows how well the wall keeps its pace (docs/operator.md). It has words, and graphs
@@ -45,14 +48,16 @@ public:
 
 private:
     struct Graph;
-    void addPanel();
-    void addGraph(const Graph& graph, glm::ivec2 topLeft);
+    [[nodiscard]] Sheet panel() const;
+    void addGraph(Sheet& sheet, const Graph& graph, glm::ivec2 topLeft) const;
+    void paintDots(const EyeTarget& target);
 
     OverlayLayout layout_;
     PixelRect pixels_;
     double periodMs_;  // period of the wall's refresh rate
     TileStatistics statistics_;
-    FlatPainter painter_;
+    std::optional<PanelPainter> panelPainter_;  // of a layout with a face
+    std::optional<FlatPainter> dotPainter_;     // of a layout without one
 };
 
 /// Returns the end of a graph's axis: the smallest of 1, 2 and 5 times a power of ten that is at least `value`.

@@ -196,6 +196,33 @@ TEST_F(StatisticsOverlay, GivesWayToATestPattern) {
     expectEqualOutside({}, "sand again");
 }
 
+TEST_F(StatisticsOverlay, WritesItsWordsInTheFontOfTheHelp) {
+    prepare(walls::Stereo::passive, 1);
+    for (int i = 0; i < 3; ++i) {
+        paintBoth(true, false);
+    }
+    const OverlayLayout layout = overlayLayout(wall_.tiles.at(kTile).pixels);
+    ASSERT_NE(layout.face, nullptr);
+    const render_node::Face& face = *layout.face;
+    const EyeTarget& eye = *shown_->pictures()[0];
+    const Pixels picture = eye.read();
+    // The colour behind the words is that of the panel's corner within its frame.
+    const int padding = face.size / 2;
+    const auto back = sample::pixel(picture, eye.width(), layout.at.x + padding / 2, layout.at.y + padding / 2);
+    const std::string words = "RANK 6 r2c2 ON node6";
+    render_node::Sheet sheet({render_node::textWidth(face, words), face.lineHeight}, {back[0], back[1], back[2]});
+    sheet.write(face, words, {0, 0}, {235, 237, 242});
+    for (int y = 0; y < sheet.size().y; ++y) {
+        for (int x = 0; x < sheet.size().x; ++x) {
+            const auto got = sample::pixel(picture, eye.width(), layout.at.x + padding + x, layout.at.y + padding + y);
+            const auto want = sheet.rgb().subspan(3 * static_cast<std::size_t>(y * sheet.size().x + x), 3);
+            for (int channel = 0; channel < 3; ++channel) {
+                ASSERT_EQ(got[channel], want[static_cast<std::size_t>(channel)]) << x << ", " << y;
+            }
+        }
+    }
+}
+
 TEST(OverlayLayout, FitsEveryTile) {
     for (const glm::ivec2 tile : {glm::ivec2(1024, 768),
                                   {96, 72},
@@ -213,9 +240,16 @@ TEST(OverlayLayout, FitsEveryTile) {
         EXPECT_LE(5 * layout.size.y, 3 * tile.y);
         EXPECT_EQ(layout.pixels(tile).empty(), tile.x == 1);
     }
-    EXPECT_TRUE(overlayLayout({1024, 768}).graphs);
-    EXPECT_EQ(overlayLayout({1024, 768}).dot, 2);
-    EXPECT_FALSE(overlayLayout({96, 72}).graphs);
+    EXPECT_EQ(overlayLayout({96, 72}).face, nullptr);
+    const auto sizeAt = [](int width, int height) { return overlayLayout({width, height}).face->size; };
+    EXPECT_EQ(sizeAt(1024, 768), 16);
+    EXPECT_EQ(sizeAt(1920, 1080), 26);
+    EXPECT_EQ(sizeAt(3840, 2160), 44);
+    const glm::ivec2 least = (5 * overlayLayout({480, 1080}).size + 2) / 3;
+    EXPECT_EQ(least, glm::ivec2(349, 332)) << "as the header and docs/operator.md say";
+    EXPECT_NE(overlayLayout(least).face, nullptr);
+    EXPECT_EQ(overlayLayout({least.x - 1, least.y}).face, nullptr);
+    EXPECT_EQ(overlayLayout({least.x, least.y - 1}).face, nullptr);
     EXPECT_EQ(overlayLayout({96, 72}).lines, 4);
 }
 
