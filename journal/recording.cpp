@@ -25,7 +25,7 @@ std::string shortcomingOf(const Journal& journal, const std::string& file, std::
 
 }  // namespace
 
-Recording::Recording(Journal journal, std::string file, int framesPerSecond)
+Recording::Recording(Journal journal, std::string file, int framesPerSecond, Span span)
     : scene_(std::move(journal.scene)), framesPerSecond_(framesPerSecond) {
     humidity_.emplace(0, scene_.material.humidity);
     auto material = journal.materials.begin();
@@ -55,15 +55,37 @@ Recording::Recording(Journal journal, std::string file, int framesPerSecond)
         }
         hashes_.emplace(journal.end->step, journal.end->hash);
     }
-    shortcoming_ = shortcomingOf(journal, file, lastStep());
+    if (span.to == Span::kEnd) {
+        shortcoming_ = shortcomingOf(journal, file, lastStep());
+    }
+    cutTo(span, file);
     const auto perSecond = static_cast<std::uint64_t>(scene_.rules.stepsPerSecond);
-    frames_ = (lastStep() * static_cast<std::uint64_t>(framesPerSecond_) + perSecond - 1) / perSecond;
+    framesBefore_ = (from_ + kLeadingSteps - 1) / kLeadingSteps;
+    frames_ = framesBefore_ +
+              ((lastStep() - from_) * static_cast<std::uint64_t>(framesPerSecond_) + perSecond - 1) / perSecond;
+}
+
+/// Leaves out the steps behind the span. A running session may write them already.
+void Recording::cutTo(const Span& span, const std::string& file) {
+    const std::uint64_t to = span.to == Span::kEnd ? lastStep() : span.to;
+    if (to > lastStep() || span.from >= to) {
+        throw base::InputError(
+            fmt::format("{}: holds steps 1 to {}, and the film is to begin behind step {} and to end at step {}; "
+                        "give --from a smaller step than --to, and --to a step of the session",
+                        file, lastStep(), span.from, to));
+    }
+    steps_.resize(static_cast<std::size_t>(to));
+    from_ = span.from;
 }
 
 std::uint64_t Recording::stepsUntil(std::uint64_t frame) const {
+    if (frame <= framesBefore_) {
+        return std::min(from_, frame * kLeadingSteps);
+    }
     // Computed in whole numbers, so that a film of an hour loses no step to rounding.
-    return std::min(lastStep(), frame * static_cast<std::uint64_t>(scene_.rules.stepsPerSecond) /
-                                    static_cast<std::uint64_t>(framesPerSecond_));
+    return std::min(lastStep(), from_ + (frame - framesBefore_) *
+                                            static_cast<std::uint64_t>(scene_.rules.stepsPerSecond) /
+                                            static_cast<std::uint64_t>(framesPerSecond_));
 }
 
 std::span<const sand::Step> Recording::stepsOf(std::uint64_t frame) const {

@@ -40,6 +40,7 @@ constexpr std::array kFrame{named(Keystroke::kHome), plain('v')};
 constexpr std::array kPause{plain(' ')};
 constexpr std::array kSave{control('s')};
 constexpr std::array kCapture{named(Keystroke::kF12)};
+constexpr std::array kFilm{named(Keystroke::kF1 + 8)};
 constexpr std::array kWireframe{plain('g')}, kHillShade{plain('m')}, kForce{plain('f')}, kStatistics{plain('s')};
 constexpr std::array kPattern{plain('t')};
 constexpr std::array kFullScreen{named(Keystroke::kF11)};
@@ -47,7 +48,7 @@ constexpr std::array kHelp{named(Keystroke::kF1), plain('?'), plain('h')};
 constexpr std::array kLeave{named(Keystroke::kEscape)};
 constexpr std::array kQuit{base::kCloseKey};
 
-constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
+constexpr std::array<KeyEntry, 23> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
                                           {KeyAction::larger, kLarger, "larger tool", true},
                                           {KeyAction::smaller, kSmaller, "smaller tool", true},
                                           {KeyAction::turn, kTurn, "turns the tool", true},
@@ -60,6 +61,7 @@ constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the
                                           {KeyAction::pause, kPause, "pauses or resumes"},
                                           {KeyAction::save, kSave, "saves the sand"},
                                           {KeyAction::capture, kCapture, "saves a picture"},
+                                          {KeyAction::film, kFilm, "begins, ends a film", false, true},
                                           {KeyAction::wireframe, kWireframe, "wireframe"},
                                           {KeyAction::hillShade, kHillShade, "hill-shade"},
                                           {KeyAction::force, kForce, "force as an arrow"},
@@ -70,10 +72,9 @@ constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the
                                           {KeyAction::leave, kLeave, "leaves; twice: ends", false, true},
                                           {KeyAction::quit, kQuit, "ends the session", false, true}}};
 
-constexpr std::array<MouseEntry, 6> kMouse{{{"left button", "digs"},
+constexpr std::array<MouseEntry, 5> kMouse{{{"left button", "digs"},
                                             {"wheel", "zooms, or sets depth"},
-                                            {"Shift+wheel", "depth of the tool"},
-                                            {"Ctrl+wheel", "size of the tool"},
+                                            {"Shift, Ctrl+wheel", "depth, size of the tool"},
                                             {"right button", "turns the sand"},
                                             {"middle, Shift+right", "moves the sand"}}};
 

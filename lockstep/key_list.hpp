@@ -27,6 +27,7 @@ enum class KeyAction : std::uint8_t {
     pause,
     save,
     capture,
+    film,  // begins a film, or ends it
     wireframe,
     hillShade,
     force,

@@ -130,6 +130,19 @@ void describeReplay(host::CommandLine& line, ProgramOptions& options) {
     const host::Option film =
         line.flag("--film", options.session.film, "write every frame of a replay as a picture of the whole wall");
     film.needs(replay);
+    line.option("--from", options.span.from, "the film begins behind this step of the session (default: 0, its start)")
+        .metavar("STEP")
+        .needs(film)
+        .offeredBy({"film"});
+    line.option("--to", options.span.to, "the film ends at this step of the session (default: its last one)")
+        .metavar("STEP")
+        .positive()
+        .needs(film)
+        .offeredBy({"film"});
+    line.option("--view", options.view, "the film shows a desktop's sand from here, as F9 has printed it")
+        .metavar("ZOOM,TURN,TILT,EAST,NORTH,UP")
+        .needs(film)
+        .offeredBy({"film"});
     line.choice("--eye", options.session.filmEye, "the eye that the film shows, in any stereo mode")
         .needs(film)
         .offeredBy({"film"});

@@ -19,6 +19,8 @@ namespace master {
 struct ProgramOptions {
     std::string scene, replay, wall, haptic = "none", out;
     int framesPerSecond = 30;   // of a replay
+    journal::Span span;         // of a film
+    std::string view;           // of a film; empty: frames the terrain
     std::string stereo, track;  // empty: as in the wall file
     std::string desk;           // empty: the wall is not shown on a desktop
     std::string pattern = "none";

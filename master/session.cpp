@@ -54,7 +54,8 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
           scene, options_.record.resumed ? options_.record.resumed->material : scene.material, wall, options_.out,
           options_.desk,
           {sand_, edits_, steps_->force(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
-           [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
+           [this](double share) { record_.keepForce(share); }, [this] { return status(); },
+           !record_.journalFile().empty()}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace,
                scene.rules.stepsPerSecond),
       dark_(wall, labels_.names),
@@ -125,7 +126,7 @@ lockstep::FrameMessage Session::compose(const ArrivedSteps& steps) {
     // The ranks may still have to take the journal's sand, so the last frame comes after the replay.
     const bool last = ends() || shownThen >= options_.steps;
     frame.stop = last && check_.mayEnd(now, shownThen);
-    frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.needsCapture());
+    frame.capture = film_ ? filmsFrame() : (frame.stop ? options_.pictures : desk_.needsCapture());
     // Moving sand is drawn more coarsely in pictures that are soon replaced, and in no others.
     frame.sharp = frame.capture || frame.stop || held();
     if (!frame.capture) {  // pictures show no answers
@@ -270,7 +271,7 @@ int Session::run() {
         if (agreed) {
             printProgress(!more);
         }
-        if (agreed && film_ && more) {
+        if (agreed && filmsFrame() && more) {
             film_->take(barrier_);
         }
     }

@@ -119,6 +119,8 @@ private:
     DarkOutputs dark_;
     SandCheck check_;
     std::optional<Film> film_;
+    /// Returns whether the film shows the present frame. The frames before its beginning are not shown.
+    [[nodiscard]] bool filmsFrame() const { return film_ && frame_ > options_.recording->framesBefore(); }
 };
 
 }  // namespace master

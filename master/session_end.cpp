@@ -37,9 +37,9 @@ int Session::writeResults(bool agreed) {
         (void)writeFailure({"summary", -1, "", "", error.what()}, options_.out);
         status = 1;
     }
-    if (agreed && film_) {
+    if (agreed && filmsFrame()) {
         film_->take(barrier_);
-    } else if (agreed && options_.pictures) {
+    } else if (agreed && options_.pictures && !film_) {
         writeWallPictures(barrier_, desk_.shownWall(), options_.out);
     }
     if (options_.report) {

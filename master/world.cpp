@@ -142,7 +142,7 @@ scene::Scene openRecording(const MemoryUse& use, ProgramOptions& options) {
     requireMemoryOfJournal(use, openJournal(options.replay));
     SessionOptions& session = options.session;
     session.recording = std::make_shared<const journal::Recording>(readJournal(options.replay), options.replay,
-                                                                   options.framesPerSecond);
+                                                                   options.framesPerSecond, options.span);
     if (!session.recording->shortcoming().empty()) {
         host::printLine("{}", session.recording->shortcoming());
     }
@@ -227,6 +227,9 @@ void chooseView(ProgramOptions& options, const World& world) {
     DeskOptions& desk = options.session.desk;
     desk.pointer = options.session.pointer;
     desk.film = options.session.film;
+    if (!options.view.empty()) {
+        desk.view = walls::Orbit::parse(options.view, "--view");
+    }
     desk.visibleTool =
         desk.visibleTool && options.session.record.resumed == nullptr;  // a person may have chosen another
     desk.pattern = lockstep::parsePattern(options.pattern);

@@ -40,6 +40,8 @@ public:
     /// Brings the sand back to where the wall file has it. If the screens then cut off a part of `box`, moves the sand
     /// and makes it smaller until they show the whole box.
     void frame(const TerrainBox& box);
+    /// Shows the sand as another view of this wall and this field did.
+    void show(const Orbit& orbit) { orbit_ = orbit; }
 
     /// Returns the matrix from the scene to the room.
     [[nodiscard]] glm::dmat4 sceneToRoom() const { return sceneToRoom(orbit_); }

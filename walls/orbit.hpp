@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <string>
 
 #include "walls/wall.hpp"
 
@@ -21,6 +22,11 @@ struct Orbit {
     /// Returns this orbit after a drag of the view [side of the window], right and down. The sum of both tilts stays
     /// within its limits, or where it was if the wall file's own tilt is outside of them.
     [[nodiscard]] Orbit dragged(const Stage& stage, double right, double down) const;
+    /// Returns the six numbers "ZOOM,TURN,TILT,EAST,NORTH,UP", from which parse() makes an equal orbit.
+    [[nodiscard]] std::string text() const;
+    /// Throws base::InputError, which begins with `what`, if `text` has other than six finite numbers, or a zoom that
+    /// is not positive.
+    [[nodiscard]] static Orbit parse(const std::string& text, const std::string& what);
     friend bool operator==(const Orbit&, const Orbit&) = default;
 };
 

@@ -70,6 +70,8 @@ std::vector<std::string> commandsOf(const lockstep::KeyFound& key, const KeyStat
             return {"save " + state.saveName};
         case KeyAction::capture:
             return {"capture"};
+        case KeyAction::film:
+            return {"film"};
         case KeyAction::wireframe:
             return {switched(Overlay::wireframe, state)};
         case KeyAction::hillShade:
@@ -146,6 +148,7 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
         case KeyAction::redo:  // answered when the wall shows it
         case KeyAction::save:
         case KeyAction::capture:  // answered when the files are written
+        case KeyAction::film:     // answered by the desk
         case KeyAction::help:
         case KeyAction::fullScreen:
         case KeyAction::leave:

@@ -43,6 +43,7 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
              },
              [this](const std::string& why, const Askers& askers) { refuse(why, askers); }}),
       captures_(out_),
+      films_(out_, scene.rules.stepsPerSecond),
       force_(options.force),
       film_(options.film),
       windows_(scene, out_, options.pointer,
@@ -56,6 +57,9 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
     views_.show(options.layers);
     views_.setHumidity(material_.humidity);
     windows_.frameView();
+    if (options.view) {
+        views_.show(*options.view);
+    }
     if (options.visibleTool) {
         windows_.enlargeTool();
     }
@@ -209,7 +213,49 @@ void OperatorDesk::finishJobs(bool wait) {
     }
 }
 
+void OperatorDesk::markFilm(const Asker& asker) {
+    if (!session_.keepsJournal) {
+        throw base::InputError("film: a film is made of the journal, and this session keeps none");
+    }
+    BackgroundJobs::Result answer;
+    if (films_.begun()) {
+        answer = endFilm();
+    } else {
+        const std::uint64_t step = session_.sand.replica().stepNumber();
+        films_.begin(step, views_.orbit());
+        answer.json = answerLine({{"ok", true}, {"film", "begins"}, {"step", step}});
+        answer.words = "film begins; the same again ends it";
+    }
+    if (!asker.client && !asker.window) {
+        host::printLine("{}", answer.words);
+    }
+    answerAll({asker}, answer);
+}
+
+/// Ends the film that has begun. Throws as FilmMarks::end() does.
+BackgroundJobs::Result OperatorDesk::endFilm() {
+    const MarkedFilm film = films_.end(session_.sand.replica().stepNumber());
+    emitEvent(film);
+    BackgroundJobs::Result answer;
+    answer.json = answerLine({{"ok", true},
+                              {"film", "ends"},
+                              {"folder", film.folder},
+                              {"from", film.from},
+                              {"to", film.to},
+                              {"seconds", film.seconds},
+                              {"view", film.view ? Json(film.view->text()) : Json()}});
+    answer.words = inWords(film);
+    return answer;
+}
+
 void OperatorDesk::close() {
+    if (films_.begun()) {
+        try {
+            host::printLine("{}", endFilm().words);
+        } catch (const base::InputError& error) {
+            host::printLine("{}", error.what());
+        }
+    }
     finishJobs(true);
     answerSettle({});
     control_.reset();

@@ -14,6 +14,7 @@
 #include "master/journal/saved_sand.hpp"
 #include "master/operator/background_jobs.hpp"
 #include "master/operator/captures.hpp"
+#include "master/operator/film_marks.hpp"
 #include "master/operator/operator_input.hpp"
 #include "master/operator/undo_desk.hpp"
 #include "master/operator/verb_arguments.hpp"
@@ -31,10 +32,11 @@ struct DeskOptions {
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
     lockstep::Overlays layers;                            // shown from the start
     tracking::Source tracker;                             // source of the head's pose
-    std::optional<double> force;  // share of the force that an operator has set; nullopt: none has
-    bool film = false;            // the pictures have the size in the wall file
-    bool pointer = false;         // the hand is the pointer, so that all keys of lockstep::keyList() act
-    bool visibleTool = false;     // begins with WindowDesk::enlargeTool()
+    std::optional<double> force;       // share of the force that an operator has set; nullopt: none has
+    bool film = false;                 // the pictures have the size in the wall file
+    bool pointer = false;              // the hand is the pointer, so that all keys of lockstep::keyList() act
+    bool visibleTool = false;          // begins with WindowDesk::enlargeTool()
+    std::optional<walls::Orbit> view;  // of a desktop from the start; nullopt: frames the terrain
 };
 
 /// Carries out and answers the commands that operators give a running session, on standard input or through its control
@@ -50,6 +52,7 @@ public:
         std::function<bool(std::int64_t)> room;  // whether the disk has room for so many bytes of loaded sand
         std::function<void(double)> keepForce;   // writes a share of the force to the journal
         std::function<nlohmann::json()> status;  // answer of `status`, without the fields of the desk
+        bool keepsJournal = true;                // of which films are made
     };
 
     /// `material` is the material of the scene, or of the resumed session. The wall and the objects that `session`
@@ -101,6 +104,8 @@ public:
     void save(const std::string& name, const Asker& asker);
     void load(const std::string& name, const Asker& asker);
     void capture(const Asker& asker) { captures_.ask(asker); }
+    /// Begins a film, or ends the one that has begun.
+    void markFilm(const Asker& asker);
     void shareForce(double share, const Asker& asker);
     void stop() { input_.stop(); }
 
@@ -122,6 +127,7 @@ private:
     void finishJobs(bool wait);
     void answerAll(const Askers& askers, const BackgroundJobs::Result& result);
     void refuse(const std::string& why, const Askers& askers);
+    [[nodiscard]] BackgroundJobs::Result endFilm();
 
     const walls::Wall& wall_;
     walls::Wall shown_;
@@ -137,6 +143,7 @@ private:
     BackgroundJobs jobs_;
     UndoDesk undo_;
     Captures captures_;
+    FilmMarks films_;
     /// A settle that continues, and whose client waits for its end.
     struct Settling {
         Client client = 0;

@@ -62,6 +62,7 @@ constexpr auto verbsOf() {
         {"save", "NAME", byDesk, [](It it) { it.desk.save(readSaveName(it.argument), it.asker); }},
         {"load", "NAME", byDesk, [](It it) { it.desk.load(readSaveName(it.argument), it.asker); }},
         {"capture", "", byDesk, [](It it) { it.desk.capture(it.asker); }},
+        {"film", "", byDesk, [](It it) { it.desk.markFilm(it.asker); }},
         {"force", "on|off|scale SHARE", byDesk, [](It it) { it.desk.shareForce(readShare(it.argument), it.asker); }},
         {"stop", "", atOnce, [](It it) { it.desk.stop(); }},
     });

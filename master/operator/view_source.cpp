@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "base/input_error.hpp"
 #include "host/print_line.hpp"
 #include "shapes/box_outline.hpp"
 #include "walls/projection.hpp"
@@ -47,6 +48,14 @@ void ViewSource::frame(const sand::HeightSpan& sand) {
         desk_->frame({box.low, box.high});
         place(desk_->sceneToRoom());
     }
+}
+
+void ViewSource::show(const walls::Orbit& orbit) {
+    if (!desk_) {
+        throw base::InputError("--view: the view of this wall is fixed, because it is no desktop; leave --view out");
+    }
+    desk_->show(orbit);
+    place(desk_->sceneToRoom());
 }
 
 lockstep::ViewState ViewSource::at(double seconds) {

@@ -46,6 +46,12 @@ public:
     /// floor stays below the lowest sand of all calls, because ranks draw it where it was at the start. Ignored unless
     /// moves().
     void frame(const sand::HeightSpan& sand);
+    /// Shows the sand as another session on this wall did. Throws base::InputError unless moves().
+    void show(const walls::Orbit& orbit);
+    /// Returns the view to which people have moved the sand, or nullopt unless moves().
+    [[nodiscard]] std::optional<walls::Orbit> orbit() const {
+        return desk_ ? std::optional(desk_->orbit()) : std::nullopt;
+    }
     /// Calls TrackedViewer::separateEyes().
     void separateEyes(double metres) { viewer_.separateEyes(metres); }
     [[nodiscard]] double eyeSeparation() const { return state_.eyeSeparation; }  // [m], in the last view of at()

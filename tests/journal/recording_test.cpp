@@ -49,6 +49,43 @@ TEST(Recording, EachFrameShowsTheStepsOfItsTime) {
     }
 }
 
+TEST(Recording, OfASpanLeadsToItsBeginningAndEndsAtItsEnd) {
+    const journal::Recording recording(sessionOf(601), "FILE", 30, {130, 330});
+    EXPECT_EQ(recording.framesBefore(), 3U);
+    EXPECT_EQ(recording.frames(), 3U + 100) << "200 steps at 60 a second are 100 frames at 30 a second";
+    EXPECT_EQ(recording.lastStep(), 330U);
+    EXPECT_EQ(recording.shortcoming(), "");
+    std::uint64_t shown = 0;
+    for (std::uint64_t frame = 1; frame <= recording.frames(); ++frame) {
+        for (const sand::Step& step : recording.stepsOf(frame)) {
+            ASSERT_EQ(step.number, ++shown) << "frame " << frame;
+        }
+        ASSERT_EQ(shown, frame <= 3 ? std::min<std::uint64_t>(130, 60 * frame) : 130 + 2 * (frame - 3)) << frame;
+    }
+    EXPECT_EQ(shown, 330U);
+}
+
+// A running session may write the last record just now.
+TEST(Recording, OfASpanThatIsThereIsWholeAlsoIfTheSessionGoesOn) {
+    journal::Journal journal = sessionOf(9);
+    journal.end.reset();
+    journal.tornBytes = 7;
+    EXPECT_EQ(journal::Recording(journal, "FILE", 30, {0, 6}).shortcoming(), "");
+    EXPECT_NE(journal::Recording(journal, "FILE", 30, {3, journal::Span::kEnd}).shortcoming(), "");
+}
+
+TEST(Recording, RefusesASpanOutsideTheSession) {
+    for (const journal::Span span : {journal::Span{0, 602}, {300, 300}, {400, 300}, {601, journal::Span::kEnd}}) {
+        try {
+            const journal::Recording recording(sessionOf(601), "FILE", 30, span);
+            ADD_FAILURE() << span.from << " to " << span.to;
+        } catch (const base::InputError& error) {
+            EXPECT_EQ(std::string(error.what()).find("FILE: holds steps 1 to 601, and the film is to begin"), 0U)
+                << error.what();
+        }
+    }
+}
+
 TEST(Recording, KnowsTheHashesThatTheSessionWrote) {
     const journal::Recording recording(sessionOf(10), "FILE", 30);
     for (const std::uint64_t step : {0U, 3U, 6U, 9U, 10U}) {

@@ -63,6 +63,8 @@ TEST(KeyList, HasTheHabitsOfDesktops) {
     EXPECT_EQ(actionOf(press('?')), KeyAction::help);
     EXPECT_EQ(actionOf({Keystroke::kF1, 0, 0}), KeyAction::help);
     EXPECT_EQ(actionOf({Keystroke::kF12, 0, 0}), KeyAction::capture);
+    EXPECT_EQ(actionOf({Keystroke::kF1 + 8, 0, 0}), KeyAction::film);
+    EXPECT_EQ(keyName({Keystroke::kF1 + 8, 0, 0}), "F9");
     EXPECT_EQ(actionOf({Keystroke::kHome, 0, 0}), KeyAction::frameView);
     EXPECT_FALSE(findKey(press('x')));
     EXPECT_FALSE(findKey(press('s', Keystroke::kControl | Keystroke::kShift))) << "another key";

@@ -57,6 +57,7 @@ struct NotingDesk {
         word = name;
     }
     void capture(const Asker& /* asker */) { did = "capture"; }
+    void markFilm(const Asker& /* asker */) { did = "film"; }
     void shareForce(double share, const Asker& /* asker */) {
         did = "force";
         number = share;

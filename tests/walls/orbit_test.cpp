@@ -19,6 +19,25 @@ void expectPlaced(glm::dvec3 got, glm::dvec3 want) {
     EXPECT_LT(glm::distance(got, want), 1e-12) << got.x << ", " << got.y << ", " << got.z;
 }
 
+TEST(Orbit, IsReadFromItsText) {
+    for (const Orbit& orbit : {Orbit{}, Orbit{-12.5, 1.0 / 3, 0.017, {1e-9, -2, 3.25}}, Orbit{180, -30, 64, {}}}) {
+        EXPECT_EQ(Orbit::parse(orbit.text(), "--view"), orbit) << orbit.text();
+    }
+    EXPECT_EQ(Orbit{}.text(), "1,0,0,0,0,0");
+}
+
+TEST(Orbit, RefusesATextThatIsNoView) {
+    for (const char* text : {"", "1", "1,0,0,0,0", "1,0,0,0,0,0,0", "0,0,0,0,0,0", "-1,0,0,0,0,0", "1,0,0,0,0,x",
+                             "1,0,nan,0,0,0", "1,inf,0,0,0,0", "1;0;0;0;0;0", "1, 0,0,0,0,0", "1,0,0,0,0,"}) {
+        try {
+            (void)Orbit::parse(text, "--view");
+            ADD_FAILURE() << text;
+        } catch (const base::InputError& error) {
+            EXPECT_EQ(std::string(error.what()).find(std::string("--view: '") + text + "' must be ZOOM,"), 0U);
+        }
+    }
+}
+
 TEST(Orbit, WithoutADragIsTheStage) {
     for (const glm::dvec3 place : {glm::dvec3(0), glm::dvec3(4, 2, 1), glm::dvec3(1, 2, 3)}) {
         expectPlaced(placed({}, place), glm::dvec3(stageToRoom(kTurnedStage, 4, 2, 0.5) * glm::dvec4(place, 1)));

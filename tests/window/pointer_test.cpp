@@ -108,13 +108,14 @@ TEST_F(Pointer, KeysAreCodesAndModifiers) {
     screen_->type(window_, '1', XScreen::kShift);  // types an exclamation mark, to which Shift belongs
     screen_->type(window_, ' ');
     screen_->type(window_, XScreen::kF1);
+    screen_->type(window_, XScreen::kF9);
     screen_->type(window_, XScreen::kF12);
     screen_->type(window_, XScreen::kPageUp);
     screen_->type(window_, XScreen::kHome, XScreen::kControl);
     screen_->type(window_, XScreen::kEscape);
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     Keys keys;
-    while (keys.size() < 10 && std::chrono::steady_clock::now() < until) {
+    while (keys.size() < 11 && std::chrono::steady_clock::now() < until) {
         const Keys more = context_->windows().takeKeys();
         keys.insert(keys.end(), more.begin(), more.end());
     }
@@ -125,6 +126,7 @@ TEST_F(Pointer, KeysAreCodesAndModifiers) {
                           {'!', 0, 0},
                           {' ', 0, 0},
                           {Keystroke::kF1, 0, 0},
+                          {Keystroke::kF1 + 8, 0, 0},
                           {Keystroke::kF12, 0, 0},
                           {Keystroke::kPageUp, 0, 0},
                           {Keystroke::kHome, Keystroke::kControl, 0},

@@ -29,7 +29,7 @@ export const kKeys: KeyEntry[] = [
     { action: "statistics", keys: ["S"], effect: "details" },
     { action: "help", keys: ["F1", "?", "H"], effect: "this help" },
     { action: "escape", keys: ["Esc"], effect: "closes the help, else lifts the tool, else leaves full screen" },
-    { action: "onlyInAWindow", keys: ["G", "M", "F", "T"], effect: "only in a window of a wall" },
+    { action: "onlyInAWindow", keys: ["G", "M", "F", "T", "F9"], effect: "only in a window of a wall" },
 ];
 /** Keys of a window that a page leaves to the browser. */
 export const kOfTheBrowser = ["F11", "Ctrl+Q"];

@@ -68,16 +68,17 @@ class Allowance:
 
 
 class Supervisor:
-    """Runs a session to its end, through failures.
+    """Runs a session to its end, through failures, and makes the films that people mark in it.
 
     `mpi` is one of open_mpi.py. `start_of(hosts, haptic, words, log)` returns command and environment of the job; `words` are
     more options for the master, and `log` keeps the output, unless it is None. `server_at(address, start)` returns the haptic server's command; it is None for a session without a device.
     """
 
-    def __init__(self, out, hosts, mpi, start_of, server_at, haptic, options, stop, patience=None):
+    def __init__(self, out, hosts, mpi, start_of, server_at, haptic, options, stop, patience=None, films=None):
         self.out, self.hosts = pathlib.Path(out), hosts
         self.mpi, self.start_of, self.server_at, self.haptic = mpi, start_of, server_at, haptic
         self.stop = stop
+        self.films = films  # a FilmQueue, or None
         self.patience = patience or Patience(None, stop)
         self.shown = False  # whether a try has shown a frame
         self.supervised = options.restarts > 0
@@ -217,6 +218,8 @@ class Supervisor:
                 self.mark_restart(None)
             if self.watch and not self.job.asked:
                 self.look_after_server(log)
+            self.look_after_films(log)
+        self.look_after_films(log)
         if self.watch:
             self.watch.tell(status)
         if self.supervised:
@@ -225,6 +228,14 @@ class Supervisor:
         self.mpi.tidy(self.job.process.pid)
         open_mpi.forget_memory(self.job.job_id)
         return status
+
+    def look_after_films(self, log):
+        """Makes the films that people have marked."""
+        if self.films and log:
+            for event in log.films:
+                self.films.add(event)
+            log.films.clear()
+            self.films.look()
 
     def look_after_server(self, log):
         """Starts the haptic server again if it has ended. Ends the session if the server may not be started again."""

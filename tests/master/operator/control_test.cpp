@@ -44,7 +44,7 @@ TEST(OperatorCommand, EveryVerbAsksTheDeskForItsDeed) {
         tried.insert(line.substr(0, line.find(' ')));
         return noted(line);
     };
-    for (const std::string verb : {"status", "pause", "resume", "capture", "stop"}) {
+    for (const std::string verb : {"status", "pause", "resume", "capture", "film", "stop"}) {
         EXPECT_EQ(deedOf(verb).did, verb);
     }
     EXPECT_EQ(deedOf("reset").edit, sand::Edit::reset);
@@ -94,13 +94,14 @@ TEST(OperatorCommand, EveryEditWithoutDataIsTheVerbOfItsName) {
 }
 
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
-    EXPECT_EQ(complaint("dance"),
-              "'dance' is not a command; the commands are: status, pause, resume, reset, undo, redo, settle, pattern "
-              "NAME|none|next, "
-              "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, swap-eyes on|off, tool [SHAPE] [radius=R] "
-              "[width=W] "
-              "[heading=DEG] [foot=left|right], material KEY VALUE, save NAME, load NAME, capture, force on|off|scale "
-              "SHARE, stop");
+    EXPECT_EQ(
+        complaint("dance"),
+        "'dance' is not a command; the commands are: status, pause, resume, reset, undo, redo, settle, pattern "
+        "NAME|none|next, "
+        "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, swap-eyes on|off, tool [SHAPE] [radius=R] "
+        "[width=W] "
+        "[heading=DEG] [foot=left|right], material KEY VALUE, save NAME, load NAME, capture, film, force on|off|scale "
+        "SHARE, stop");
     EXPECT_EQ(complaint("").substr(0, 19), "'' is not a command");
     EXPECT_EQ(complaint("undo twice"), "undo takes no argument, got 'twice'");
     EXPECT_EQ(complaint("pattern"), "pattern needs NAME|none|next");

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/input_error.hpp"
 #include "tests/master/operator/operator_desk_fixture.hpp"
 
 namespace {
@@ -257,6 +258,23 @@ TEST_F(Desk, WantsACaptureOfTheNextFrame) {
     obeyUntil([&] { return desk_->needsCapture(); });
     desk_->close();  // no desk takes the line, and the connection ends
     EXPECT_TRUE(answer.get().is_discarded());
+}
+
+TEST_F(Desk, MakesNoFilmOfASessionWithoutAJournal) {
+    master::OperatorDesk::SessionParts parts{sand_, edits_, &force_, {}, {}, {}, false};
+    const std::filesystem::path out = folder_ / "other";
+    std::filesystem::create_directory(out);
+    master::OperatorDesk without(scene_, scene_.material, wall_, out, {}, parts);
+    EXPECT_THROW(without.markFilm({}), base::InputError);
+    EXPECT_EQ(ask("film")["film"], "begins") << "this one keeps a journal";
+    EXPECT_EQ(ask("film")["ok"], false) << "no step was shown";
+}
+
+TEST_F(Desk, EndsAFilmWithTheSession) {
+    EXPECT_EQ(ask("film")["film"], "begins");
+    show(sand::Edit::reset);
+    desk_->close();
+    EXPECT_TRUE(std::filesystem::is_directory(folder_ / "film_001"));
 }
 
 TEST_F(Desk, EndsTheSessionByCommandOrByKey) {

@@ -135,6 +135,21 @@ TEST_F(WindowDesk, WantsACaptureByF12) {
     EXPECT_TRUE(desk_->needsCapture());
 }
 
+TEST_F(WindowDesk, BeginsAndEndsAFilmByF9) {
+    openForPointer();
+    const Keystroke f9{Keystroke::kF1 + 8, 0, 0};
+    press(f9);
+    EXPECT_EQ(answerIn(1), "film begins; the same again ends it");
+    stroke();
+    press(f9);
+    EXPECT_EQ(answerIn(1), "film of 0.0 s: make it by sandwall film --from 0 --to 2") << "no launcher listens";
+    EXPECT_TRUE(std::filesystem::is_directory(folder_ / "film_001"));
+    press(f9);
+    press(f9);
+    EXPECT_EQ(answerIn(1), "film: no step of sand since it began, so there is nothing to show");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "film_002"));
+}
+
 TEST_F(WindowDesk, ChangesTheToolByKeysWithinItsLimitsAndBackToTheScene) {
     openForPointer();
     for (int i = 0; i < 60; ++i) {  // the scene's tool is smaller than both limits

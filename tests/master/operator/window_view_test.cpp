@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "base/input_error.hpp"
 #include "shapes/box_outline.hpp"
 #include "tests/master/operator/window_desk_fixture.hpp"
 #include "walls/projection.hpp"
@@ -55,6 +56,36 @@ TEST_F(WindowView, MovesTheViewOfADesktopAndFramesItAgain) {
     }
     press(plain('v'));
     EXPECT_EQ(desk_->views().at(0).sceneToRoom, framed);
+}
+
+TEST_F(WindowView, OfAFilmIsThatOfItsBeginning) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    master::DeskOptions options;
+    options.pointer = true;
+    open(&force_, options);
+    const auto turn = [&] {
+        std::array<haptic_bridge::PointerReport, 2> pointers{};
+        pointers[1].turnX = 0.25F;
+        desk_->windows().moveView(pointers);
+    };
+    turn();
+    const auto begun = desk_->views().at(0).sceneToRoom;
+    EXPECT_EQ(ask("film")["film"], "begins");
+    turn();
+    stroke();
+    const nlohmann::json ended = ask("film");
+    EXPECT_EQ(ended["folder"], "film_001");
+    EXPECT_EQ(ended["from"], 0);
+    EXPECT_EQ(ended["to"], 2);
+    options.view = walls::Orbit::parse(ended["view"].get<std::string>(), "--view");
+    open(&force_, options);
+    EXPECT_EQ(desk_->views().at(0).sceneToRoom, begun);
+}
+
+TEST_F(WindowView, OfAFilmIsRefusedWhereTheViewIsFixed) {
+    master::DeskOptions options;
+    options.view = walls::Orbit{};
+    EXPECT_THROW(open(&force_, options), base::InputError);
 }
 
 TEST_F(WindowView, SaysThatTheViewIsAtALimitOfTheZoom) {

@@ -35,13 +35,17 @@ class RealSessions(SessionTest):
         session.stdin.write(b"nonsense\n")
         session.stdin.flush()
         self.await_event(session, "command_refused")
+        begun = self.ctl("film")["step"]
+        while self.ctl("status")["step"] <= begun:
+            pass
+        self.assertEqual(self.ctl("film")["folder"], "film_001")
         self.assertEqual(self.ctl("stop"), {"ok": True})
         self.in_order(session)
         summary = session_results.summary_of(self.out)
         self.valid("summary", summary)
         self.assertIn("head_tracking", summary)
         self.assertIn("force_us", summary["haptic"])
-        self.assertTrue({"progress", "link", "listening", "head_tracking", "command_refused", "report"} <= set(self.events_by_name()))
+        self.assertTrue({"progress", "link", "listening", "head_tracking", "command_refused", "film", "report"} <= set(self.events_by_name()))
         self.reject_all("summary", summary)
         self.reject_all("status", status)
 

@@ -45,7 +45,7 @@ public:
     void askToClose(unsigned long window) const;
     // Symbols of keys, as X has them. A small letter is its own symbol.
     static constexpr unsigned long kEscape = 0xff1b, kHome = 0xff50, kPageUp = 0xff55, kF1 = 0xffbe;
-    static constexpr unsigned long kF11 = 0xffc8, kF12 = 0xffc9;
+    static constexpr unsigned long kF9 = 0xffc6, kF11 = 0xffc8, kF12 = 0xffc9;
     static constexpr unsigned kShift = 1, kControl = 4;  // states of modifiers
     /// Sends a key press and its release. `symbol` is the key's symbol without modifiers, such as 't' or kF1, and
     /// `state` the sum of the modifiers that are held.
