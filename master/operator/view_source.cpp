@@ -52,7 +52,7 @@ void ViewSource::frame(const sand::HeightSpan& sand) {
 
 void ViewSource::show(const walls::Orbit& orbit) {
     if (!desk_) {
-        throw base::InputError("--view: the view of this wall is fixed, because it is no desktop; leave --view out");
+        throw base::InputError("--view: this wall has a fixed view; leave --view out");
     }
     desk_->show(orbit);
     place(desk_->sceneToRoom());

@@ -48,7 +48,7 @@ class JobLog:
         self.last_by_rank = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # last lines by rank; mpirun's own lines have the key None
         self.mpiruns = b""  # the last lines of mpirun itself on standard error
         self.ending = None  # `ranks` and `names` of the first event `waiting` that ends the job
-        self.films = []  # events `film` that nobody has taken
+        self.films = []  # events `film` that the supervisor still has to take
         self.failure = None  # the content of the event `failure`, as events.failure_in() returns it
         self.frame = self.step = None  # the last frame and step that an event reported as shown
         self.shown_at = 0.0  # time of that event by the monotonic clock [s]
