@@ -1,32 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lockstep/session_message.hpp"
 
+#include <utility>
+
 #include "lockstep/frame_barrier.hpp"
 
 namespace lockstep {
-namespace {
-
-/// Returns the bytes of a message. Takes the memory for them at once: the scene and the state may have gigabytes.
-base::Bytes encodedOnce(const SessionMessage& message) {
-    constexpr std::size_t kRest = 1 << 16;  // [byte], a usual size of the other fields
-    base::ByteWriter writer;
-    writer.reserve(message.scene.size() + message.state.size() + message.wall.size() + kRest);
-    base::putMember(writer, message);
-    return writer.take();
-}
-
-}  // namespace
-
-std::optional<SessionMessage> broadcastSession(const Cluster& cluster, const SessionMessage* fromMaster,
+std::optional<SessionMessage> broadcastSession(const Cluster& cluster, SessionMessage* fromMaster,
                                                const std::function<void(double)>& sent) {
     cluster.mayTakeLong(true);
     cluster.awaitBroadcast();
-    const base::Bytes bytes = cluster.broadcast(fromMaster != nullptr ? encodedOnce(*fromMaster) : base::Bytes{}, sent);
-    cluster.mayTakeLong(false);
-    if (bytes.empty()) {
+    SessionMessage message;
+    // Scene and state follow by themselves, because they may have gigabytes and would be copied into the message.
+    base::Bytes scene, state, rest;
+    if (fromMaster != nullptr) {
+        message = std::move(*fromMaster);
+        scene = std::exchange(message.scene, {});
+        state = std::exchange(message.state, {});
+        rest = base::encoded(message);
+    }
+    const auto whole = static_cast<double>(scene.size() + state.size());
+    const auto part = [&](const base::Bytes& bytes, double before) -> std::function<void(double)> {
+        if (!sent || whole == 0) {
+            return {};
+        }
+        return [&, before](double share) { sent((before + share * static_cast<double>(bytes.size())) / whole); };
+    };
+    base::Bytes got = cluster.broadcast(rest);
+    if (got.empty() && fromMaster == nullptr) {
+        cluster.mayTakeLong(false);
         return std::nullopt;
     }
-    return base::decoded<SessionMessage>(bytes);
+    base::Bytes gotScene = cluster.broadcast(scene, part(scene, 0));
+    base::Bytes gotState = cluster.broadcast(state, part(state, static_cast<double>(scene.size())));
+    cluster.mayTakeLong(false);
+    if (fromMaster != nullptr) {
+        return std::nullopt;
+    }
+    message = base::decoded<SessionMessage>(got);
+    message.scene = std::move(gotScene);
+    message.state = std::move(gotState);
+    return message;
 }
 
 std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine,

@@ -41,8 +41,8 @@ struct SessionMessage {
 };
 
 /// Returns the master's argument `fromMaster` on the render ranks, and nullopt at the master. With null the master
-/// refuses the session. `sent` is called as Cluster::broadcast() does. Collective.
-[[nodiscard]] std::optional<SessionMessage> broadcastSession(const Cluster& cluster, const SessionMessage* fromMaster,
+/// refuses the session. Takes the content of `fromMaster`. `sent` is called as Cluster::broadcast() does. Collective.
+[[nodiscard]] std::optional<SessionMessage> broadcastSession(const Cluster& cluster, SessionMessage* fromMaster,
                                                              const std::function<void(double)>& sent = {});
 
 /// Message of a rank before the session: where it runs, and why it cannot take part, if it cannot.

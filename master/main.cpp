@@ -84,7 +84,6 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
         (void)lockstep::broadcastSession(cluster, &world->message,
                                          printed("broadcast", "sends the scene to the ranks"));
         sessionOpen = true;
-        world->message = {};
         std::exception_ptr failed;
         try {
             sand.emplace(master::sandOf(options.session, world->scene));  // while the ranks make theirs

@@ -55,6 +55,24 @@ std::function<void(double)> told(const lockstep::Cluster& cluster, std::string p
     };
 }
 
+/// Tells where the session continues.
+void sayResumed(const ResumedSession& resumed) {
+    if (resumed.cutBytes > 0) {
+        host::printLine("{}: the last {} bytes are an incomplete write and are cut off", resumed.place.journal,
+                        resumed.cutBytes);
+    }
+    host::emitEvent("resumed", {{"step", resumed.step},
+                                {"frame", resumed.frame},
+                                {"checkpoint_step", resumed.checkpointStep},
+                                {"replayed_steps", resumed.replayedSteps},
+                                {"cut_bytes", resumed.cutBytes}});
+    host::printLine("{}: continues after step {}, frame {}, from {} and {} later steps", resumed.place.journal,
+                    resumed.step, resumed.frame,
+                    resumed.checkpointStep == 0 ? std::string("the scene")
+                                                : fmt::format("the checkpoint of step {}", resumed.checkpointStep),
+                    resumed.replayedSteps);
+}
+
 /// Finds the place where the session in --out stopped, if there is one, and returns its scene. Tells the ranks of
 /// `cluster` the progress.
 std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, const MemoryUse& use, ProgramOptions& options) {
@@ -64,8 +82,7 @@ std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, const Memor
     }
     std::optional<ResumedSession> resumed = readSession(
         journal, options.scene,
-        {.progress = {.scene = told(cluster, "read", "reads the scene", "the reading of its scene"),
-                      .read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
+        {.progress = {.read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
                       .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")},
          .executor = options.session.executor,
          .check = [&](const journal::JournalReader& reader) { requireMemoryOfJournal(use, reader); }});
@@ -74,20 +91,6 @@ std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, const Memor
         host::printLine("{}: nothing to resume; the session begins", journal.string());
         return std::nullopt;
     }
-    if (resumed->cutBytes > 0) {
-        host::printLine("{}: the last {} bytes are an incomplete write and are cut off", journal.string(),
-                        resumed->cutBytes);
-    }
-    host::emitEvent("resumed", {{"step", resumed->step},
-                                {"frame", resumed->frame},
-                                {"checkpoint_step", resumed->checkpointStep},
-                                {"replayed_steps", resumed->replayedSteps},
-                                {"cut_bytes", resumed->cutBytes}});
-    host::printLine("{}: continues after step {}, frame {}, from {} and {} later steps", journal.string(),
-                    resumed->step, resumed->frame,
-                    resumed->checkpointStep == 0 ? std::string("the scene")
-                                                 : fmt::format("the checkpoint of step {}", resumed->checkpointStep),
-                    resumed->replayedSteps);
     scene::Scene scene = std::exchange(resumed->scene, scene::Scene());  // not kept twice
     options.session.record.resumed = std::make_shared<const ResumedSession>(std::move(*resumed));
     return scene;
@@ -281,13 +284,23 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
     chooseHand(options);
     chooseView(options, world);
     session.drills = drillsOf(options, world);
+    // The sand, and that before the last stroke, take about as much as the start.
+    const auto stateOf = [&](const ResumedSession& resumed) {
+        return resumed.sand->encodeState(world.scene.packed->size() * 9 / 4);
+    };
     world.message = {world.scene.encode(),
                      world.wall.encode(),
                      session.frameTimeout,
                      {},
                      session.pointer,
                      sceneName(options),
-                     session.record.resumed ? session.record.resumed->sand->encodeState() : base::Bytes()};
+                     session.record.resumed ? stateOf(*session.record.resumed) : base::Bytes()};
+    if (session.record.resumed) {
+        session.record.resumed->check->require(world.scene,
+                                               told(cluster, "read", "reads the scene", "the reading of its scene"));
+        cluster.progressEnds();
+        sayResumed(*session.record.resumed);
+    }
     for (const Drill& drill : session.drills) {
         world.message.faults.push_back(drill.fault);
     }

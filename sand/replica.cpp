@@ -360,6 +360,13 @@ base::Bytes StateCopy::encode(const std::function<void()>& between) const {
     return writer.take();
 }
 
+base::Bytes Replica::encodeState(std::size_t expected) const {
+    base::ByteWriter writer;
+    writer.reserve(expected);
+    copyState().encodeInto(writer);
+    return writer.take();
+}
+
 void Replica::decodeState(std::span<const std::uint8_t> bytes, const std::function<void(std::size_t)>& decoded) {
     (void)base::needDefaultFloats();
     base::ByteReader reader(bytes);

@@ -207,6 +207,9 @@ public:
     [[nodiscard]] SurfaceRecorder& recorder() { return *surface_; }
     /// Returns the whole state as compressed bytes, from which another replica can continue.
     [[nodiscard]] base::Bytes encodeState() const { return copyState().encode(); }
+    /// Returns encodeState() and takes `expected` bytes of memory at once, so that a large state is not copied while it
+    /// grows.
+    [[nodiscard]] base::Bytes encodeState(std::size_t expected) const;
     /// Replaces the whole state by what encodeState() wrote. Throws base::FormatError if the bytes are not a state of
     /// kStateVersion for this field; the replica is then unchanged. The memory that it allocates is bounded by the
     /// scene and by the length of the bytes. After std::bad_alloc, call decodeState() again before other functions.

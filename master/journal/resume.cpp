@@ -13,7 +13,6 @@
 #include "host/print_line.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
-#include "master/journal/scene_check.hpp"
 
 namespace master {
 namespace {
@@ -256,10 +255,10 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
         how.check(opened);
     }
     journal::JournalReader reader = openAgain(journal, opened);
-    SceneCheck check(scene, sand::FieldSize::of(journal::rulesOf(reader)), reader.place().journal);
     ResumedSession session;
+    session.check =
+        std::make_shared<SceneCheck>(scene, sand::FieldSize::of(journal::rulesOf(reader)), reader.place().journal);
     session.scene = journal::sceneOf(reader, scene::Scene::Keep::packedToo);
-    check.require(session.scene, progress.scene);
     session.scene.material = session.material = reader.header().material.value_or(scene::Material());
     Walk walk{session, journal, {}};
     const auto all = static_cast<double>(allBytes(journal));
@@ -286,7 +285,12 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
                                          .start = &session.scene,
                                          .opened = &opened,
                                          .newestCheckpoint = newestCheckpointFor(walk.doubted),
-                                         .progress = progress.replayed});
+                                         .progress = [&](double share) {
+                                             session.check->requireIfRead(session.scene);
+                                             if (progress.replayed) {
+                                                 progress.replayed(share);
+                                             }
+                                         }});
     session.outvoted = restored.outvoted;
     session.hash = restored.replica.stateHash();
     session.sand = std::make_shared<sand::Replica>(std::move(restored.replica));

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "journal/reader.hpp"
+#include "master/journal/scene_check.hpp"
 #include "sand/replica.hpp"
 #include "scene/model/scene.hpp"
 
@@ -85,12 +86,13 @@ struct ResumedSession {
     std::int64_t cutBytes = 0;            // [byte], behind the last whole record of the journal; ignored
     std::uint64_t checkpointStep = 0, replayedSteps = 0;
     std::optional<Outvoted> outvoted;  // if the wall had shown the sand of a wrong majority when the session stopped
+    /// Reads the file of the scene while the caller encodes the sand. Call require() before the session begins.
+    std::shared_ptr<SceneCheck> check{};
 };
 
 /// Functions that readSession() calls with the part of some work that is done, 0 to 1. Each may be empty. Each is
 /// called with 1 when its work ends. A replay that begins again calls `replayed` with a smaller part.
 struct ResumeProgress {
-    std::function<void(double)> scene{};     // reading the file of the scene, to compare it with the journal's scene
     std::function<void(double)> read{};      // reading the records of the journal
     std::function<void(double)> replayed{};  // replaying the steps of the journal
 };
@@ -104,8 +106,8 @@ struct Resuming {
 };
 
 /// Reads the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
-/// is named, it must describe the session's scene. Throws base::InputError if the session cannot be continued; the text
-/// says what can be done with the journal.
+/// is named, it must describe the session's scene, which ResumedSession::check compares. Throws base::InputError if the
+/// session cannot be continued; the text says what can be done with the journal.
 [[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
                                                         const Resuming& how = {});
 

@@ -48,6 +48,12 @@ void SceneCheck::require(const scene::Scene& recorded, const std::function<void(
     }
 }
 
+void SceneCheck::requireIfRead(const scene::Scene& recorded) {
+    if (read_.valid() && read_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        require(recorded);
+    }
+}
+
 void SceneCheck::refuse() const {
     throw base::InputError(
         fmt::format("{}: is not the scene of the session in {}; leave --scene out to continue that session, or choose "

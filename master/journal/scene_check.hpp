@@ -24,8 +24,10 @@ public:
 
     /// Returns when the file is read and describes the scene `recorded`. Throws base::InputError if it describes
     /// another one or cannot be read. Calls `progress` with the part of the file that is read, 0 to 1, several times a
-    /// second. Call it once.
+    /// second. Later calls return at once.
     void require(const scene::Scene& recorded, const std::function<void(double)>& progress = {});
+    /// Does so only if the file has been read already.
+    void requireIfRead(const scene::Scene& recorded);
 
 private:
     [[nodiscard]] scene::Scene read(const sand::FieldSize& recorded);

@@ -67,7 +67,8 @@ protected:
     }
     static std::string refusal(const std::filesystem::path& journal, const std::string& scene = "") {
         try {
-            (void)master::readSession(journal, scene);
+            const auto session = master::readSession(journal, scene);
+            session->check->require(session->scene);
         } catch (const base::InputError& error) {
             return error.what();
         }

@@ -67,14 +67,16 @@ TEST_F(Resume, ComparesTheNamedSceneWithTheJournalsAndTellsTheProgress) {
     std::ofstream(file) << "name = \"other\"\n[field]\ncolumns = 40\nrows = 30\n[terrain]\n[material]\n";
     std::filesystem::create_directories(other.parent_path());
     { master::JournalWriter writer(other, scene::loadScene(file), "test"); }
-    std::vector<double> shares;
-    const master::ResumeProgress progress{.scene = [&](double share) { shares.push_back(share); }};
-    EXPECT_TRUE(master::readSession(other, file.string(), {.progress = progress}).has_value());
-    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
-    EXPECT_EQ(shares.back(), 1);
-    shares.clear();
-    EXPECT_TRUE(master::readSession(other, "", {.progress = progress}).has_value());
-    EXPECT_EQ(shares.size(), 0U) << "no scene is named";
+    for (const std::string& named : {file.string(), std::string()}) {
+        std::vector<double> shares;
+        const auto session = master::readSession(other, named);
+        session->check->require(session->scene, [&](double share) { shares.push_back(share); });
+        EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+        EXPECT_EQ(shares.empty(), named.empty());
+        EXPECT_EQ(shares.empty() ? 1 : shares.back(), 1);
+        session->check->require(session->scene);
+        session->check->requireIfRead(session->scene);
+    }
 }
 
 TEST_F(Resume, ChecksTheMemoryBeforeTheSceneIsDecoded) {
