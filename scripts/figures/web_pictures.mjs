@@ -15,10 +15,12 @@ const kWidth = 1280, kHeight = 720, kMost = 0.4;  // [level]
 fs.mkdirSync(out, { recursive: true });
 
 // The desktop's stage, before an eye in the middle of the glass whose picture has the page's angle of 35 degrees.
-const tilt = 35 * Math.PI / 180, centre = [0, 1.012, -0.158], eye = [0, 0.9995, 0.299 / 2 / Math.tan(17.5 * Math.PI / 180)];
+const desktop = fs.readFileSync(path.join(root, "walls/configs/desktop.toml"), "utf8");
+const centre = desktop.match(/^centre = \[(.*)\]$/m)[1].split(",").map(Number), tilt = Number(desktop.match(/^tilt_deg = (.*)$/m)[1]) * Math.PI / 180;
+const eye = [0, 0.9995, 0.299 / 2 / Math.tan(17.5 * Math.PI / 180)];
 const wide = 0.299 * kWidth / kHeight;
 const wall = path.join(out, "wall.toml");
-fs.writeFileSync(wall, fs.readFileSync(path.join(root, "walls/configs/desktop.toml"), "utf8").replace(/^eye = .*$/m, `eye = [${eye}]`)
+fs.writeFileSync(wall, desktop.replace(/^eye = .*$/m, `eye = [${eye}]`)
     .replace(/^tile_size = .*$/m, `tile_size = [${wide}, 0.299]`).replace(/^lower_left = .*$/m, `lower_left = [${-wide / 2}, 0.85, 0.0]`));
 // The page's room is not tilted: turn the eye instead. It looks along -z of the wall's room.
 const turned = ([x, y, z]) => [x, y * Math.cos(tilt) + z * Math.sin(tilt), z * Math.cos(tilt) - y * Math.sin(tilt)];
