@@ -57,8 +57,8 @@ struct KeyFound {
     const KeyEntry& entry;
     std::size_t index = 0;
 };
-/// Returns the entry of a key, or nullopt if the key does nothing. A key that repeats does nothing unless
-/// KeyEntry::repeats.
+/// Returns the entry of a key, or nullopt if the key does nothing. A repeated key counts only
+/// with KeyEntry::repeats.
 [[nodiscard]] std::optional<KeyFound> findKey(base::Keystroke key);
 /// Returns whether a key may end the session.
 [[nodiscard]] bool isQuitKey(base::Keystroke key);
@@ -68,7 +68,7 @@ struct KeyFound {
 /// Returns the names of an entry's keys, such as "Ctrl+Z U". The digits of the tools are one name: "1 – 6".
 [[nodiscard]] std::string keyNames(const KeyEntry& entry);
 
-/// A use of the mouse, for the help and docs/pointer.md.
+/// A use of the mouse, as the help and docs/pointer.md list it.
 struct MouseEntry {
     std::string_view input, effect;
 };

@@ -6,12 +6,13 @@
 #include "lockstep/frame_barrier.hpp"
 
 namespace lockstep {
+
 std::optional<SessionMessage> broadcastSession(const Cluster& cluster, SessionMessage* fromMaster,
                                                const std::function<void(double)>& sent) {
     cluster.mayTakeLong(true);
     cluster.awaitBroadcast();
     SessionMessage message;
-    // Scene and state follow by themselves, because they may have gigabytes and would be copied into the message.
+    // In the message, scene and state would be copied at the master and in each rank.
     base::Bytes scene, state, rest;
     if (fromMaster != nullptr) {
         message = std::move(*fromMaster);
@@ -24,9 +25,11 @@ std::optional<SessionMessage> broadcastSession(const Cluster& cluster, SessionMe
         if (!sent || whole == 0) {
             return {};
         }
-        return [&, before](double share) { sent((before + share * static_cast<double>(bytes.size())) / whole); };
+        return [&sent, whole, before, own = static_cast<double>(bytes.size())](double share) {
+            sent((before + share * own) / whole);
+        };
     };
-    base::Bytes got = cluster.broadcast(rest);
+    const base::Bytes got = cluster.broadcast(rest);
     if (got.empty() && fromMaster == nullptr) {
         cluster.mayTakeLong(false);
         return std::nullopt;

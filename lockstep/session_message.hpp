@@ -18,7 +18,7 @@ namespace lockstep {
 class FrameBarrier;
 
 /// Message that every rank gets before the first frame. Render ranks read no file: the scene and the wall come from the
-/// master.
+/// master. broadcastSession() sends `scene` and `state` by themselves, because they may have gigabytes.
 struct SessionMessage {
     base::Bytes scene;            // scene::Scene::encode
     base::Bytes wall;             // walls::Wall::encode

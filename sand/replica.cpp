@@ -354,16 +354,10 @@ void StateCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>
     sand->encodeInto(writer, between);
 }
 
-base::Bytes StateCopy::encode(const std::function<void()>& between) const {
-    base::ByteWriter writer;
-    encodeInto(writer, between);
-    return writer.take();
-}
-
-base::Bytes Replica::encodeState(std::size_t expected) const {
+base::Bytes StateCopy::encode(const std::function<void()>& between, std::size_t expected) const {
     base::ByteWriter writer;
     writer.reserve(expected);
-    copyState().encodeInto(writer);
+    encodeInto(writer, between);
     return writer.take();
 }
 

@@ -60,8 +60,8 @@ struct StateCopy {
     /// Writes the state as compressed bytes for Replica::decodeState(). Calls `between` as SurfaceCopy::encodeInto()
     /// does. Requires complete().
     void encodeInto(base::ByteWriter& writer, const std::function<void()>& between = {}) const;
-    /// Returns what encodeInto() writes.
-    [[nodiscard]] base::Bytes encode(const std::function<void()>& between = {}) const;
+    /// Returns what encodeInto() writes. Takes memory for `expected` bytes at once.
+    [[nodiscard]] base::Bytes encode(const std::function<void()>& between = {}, std::size_t expected = 0) const;
     /// Returns how often encodeInto() calls `between`. Requires complete().
     [[nodiscard]] std::size_t stripes() const {
         return sand->stripes() + (beforeStroke == nullptr ? 0 : beforeStroke->stripes());
@@ -206,10 +206,8 @@ public:
     /// because the sand before it may have been wrong.
     [[nodiscard]] SurfaceRecorder& recorder() { return *surface_; }
     /// Returns the whole state as compressed bytes, from which another replica can continue.
-    [[nodiscard]] base::Bytes encodeState() const { return copyState().encode(); }
-    /// Returns encodeState() and takes `expected` bytes of memory at once, so that a large state is not copied while it
-    /// grows.
-    [[nodiscard]] base::Bytes encodeState(std::size_t expected) const;
+    /// Takes `expected` bytes of memory at once, so that a large state is not copied while it grows.
+    [[nodiscard]] base::Bytes encodeState(std::size_t expected = 0) const { return copyState().encode({}, expected); }
     /// Replaces the whole state by what encodeState() wrote. Throws base::FormatError if the bytes are not a state of
     /// kStateVersion for this field; the replica is then unchanged. The memory that it allocates is bounded by the
     /// scene and by the length of the bytes. After std::bad_alloc, call decodeState() again before other functions.

@@ -37,7 +37,8 @@ FilmMarks::FilmMarks(std::filesystem::path out, int stepsPerSecond)
 MarkedFilm FilmMarks::end(std::uint64_t step) {
     const Begun begun = *std::exchange(begun_, std::nullopt);
     if (step <= begun.step) {
-        throw base::InputError("film: no step of sand since it began, so there is nothing to show");
+        throw base::InputError(
+            "film: the sand has made no step since the film began, so the film would have no picture");
     }
     return {makeFolder(out_), begun.step, step, static_cast<double>(step - begun.step) / stepsPerSecond_, begun.view};
 }

@@ -146,7 +146,7 @@ TEST_F(WindowDesk, BeginsAndEndsAFilmByF9) {
     EXPECT_TRUE(std::filesystem::is_directory(folder_ / "film_001"));
     press(f9);
     press(f9);
-    EXPECT_EQ(answerIn(1), "film: no step of sand since it began, so there is nothing to show");
+    EXPECT_EQ(answerIn(1), "film: the sand has made no step since the film began, so the film would have no picture");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "film_002"));
 }
 

@@ -20,6 +20,13 @@ using test::plain;
 class WindowView : public test::WindowDeskTest {
 protected:
     using WindowDeskTest::WindowDeskTest;
+    /// Opens the desk of a desktop, whose hand is the pointer.
+    void openDesktop() {
+        wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+        master::DeskOptions options;
+        options.pointer = true;
+        open(&force_, options);
+    }
 };
 
 // The wall of these tests is in stereo, so that it is not a desktop.
@@ -40,10 +47,7 @@ TEST_F(WindowView, KeepsTheViewOfAWallThatIsNoDesktop) {
 }
 
 TEST_F(WindowView, MovesTheViewOfADesktopAndFramesItAgain) {
-    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
-    master::DeskOptions options;
-    options.pointer = true;
-    open(&force_, options);
+    openDesktop();
     const auto framed = desk_->views().at(0).sceneToRoom;
     const std::array<haptic_bridge::PointerReport, 3> moves{
         {{.turnX = 0.25F}, {.wheel = 1, .wheelAt = {0, 1, 0}}, {.pan = {0.1F, 0, 0}}}};
@@ -59,10 +63,7 @@ TEST_F(WindowView, MovesTheViewOfADesktopAndFramesItAgain) {
 }
 
 TEST_F(WindowView, OfAFilmIsThatOfItsBeginning) {
-    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
-    master::DeskOptions options;
-    options.pointer = true;
-    open(&force_, options);
+    openDesktop();
     const auto turn = [&] {
         std::array<haptic_bridge::PointerReport, 2> pointers{};
         pointers[1].turnX = 0.25F;
@@ -89,10 +90,7 @@ TEST_F(WindowView, OfAFilmIsRefusedWhereTheViewIsFixed) {
 }
 
 TEST_F(WindowView, SaysThatTheViewIsAtALimitOfTheZoom) {
-    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
-    master::DeskOptions options;
-    options.pointer = true;
-    open(&force_, options);
+    openDesktop();
     const auto answerToWheel = [&](float notches) {
         std::array<haptic_bridge::PointerReport, 2> pointers{};
         pointers[1].wheel = notches;
