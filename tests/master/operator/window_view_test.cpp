@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
+#include <optional>
 
 #include "base/input_error.hpp"
 #include "shapes/box_outline.hpp"
@@ -20,11 +21,12 @@ using test::plain;
 class WindowView : public test::WindowDeskTest {
 protected:
     using WindowDeskTest::WindowDeskTest;
-    /// Opens the desk of a desktop, whose hand is the pointer.
-    void openDesktop() {
+    /// Opens the desk of a desktop, whose hand is the pointer. `view` is that of a film.
+    void openDesktop(const std::optional<walls::Orbit>& view = {}) {
         wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
         master::DeskOptions options;
         options.pointer = true;
+        options.view = view;
         open(&force_, options);
     }
 };
@@ -78,8 +80,7 @@ TEST_F(WindowView, OfAFilmIsThatOfItsBeginning) {
     EXPECT_EQ(ended["folder"], "film_001");
     EXPECT_EQ(ended["from"], 0);
     EXPECT_EQ(ended["to"], 2);
-    options.view = walls::Orbit::parse(ended["view"].get<std::string>(), "--view");
-    open(&force_, options);
+    openDesktop(walls::Orbit::parse(ended["view"].get<std::string>(), "--view"));
     EXPECT_EQ(desk_->views().at(0).sceneToRoom, begun);
 }
 
