@@ -12,38 +12,34 @@ std::optional<SessionMessage> broadcastSession(const Cluster& cluster, SessionMe
     cluster.mayTakeLong(true);
     cluster.awaitBroadcast();
     SessionMessage message;
-    // In the message, scene and state would be copied at the master and in each rank.
-    base::Bytes scene, state, rest;
+    base::Bytes scene, rest;  // in the message, the scene would be copied at the master and in each rank
     if (fromMaster != nullptr) {
         message = std::move(*fromMaster);
         scene = std::exchange(message.scene, {});
-        state = std::exchange(message.state, {});
         rest = base::encoded(message);
     }
-    const auto whole = static_cast<double>(scene.size() + state.size());
-    const auto part = [&](const base::Bytes& bytes, double before) -> std::function<void(double)> {
-        if (!sent || whole == 0) {
-            return {};
-        }
-        return [&sent, whole, before, own = static_cast<double>(bytes.size())](double share) {
-            sent((before + share * own) / whole);
-        };
-    };
     const base::Bytes got = cluster.broadcast(rest);
     if (got.empty() && fromMaster == nullptr) {
         cluster.mayTakeLong(false);
         return std::nullopt;
     }
-    base::Bytes gotScene = cluster.broadcast(scene, part(scene, 0));
-    base::Bytes gotState = cluster.broadcast(state, part(state, static_cast<double>(scene.size())));
+    base::Bytes gotScene = cluster.broadcast(scene, sent);
     cluster.mayTakeLong(false);
     if (fromMaster != nullptr) {
         return std::nullopt;
     }
     message = base::decoded<SessionMessage>(got);
     message.scene = std::move(gotScene);
-    message.state = std::move(gotState);
     return message;
+}
+
+base::Bytes broadcastState(const Cluster& cluster, const base::Bytes& fromMaster,
+                           const std::function<void(double)>& sent) {
+    cluster.mayTakeLong(true);
+    cluster.awaitBroadcast();
+    base::Bytes state = cluster.broadcast(fromMaster, sent);
+    cluster.mayTakeLong(false);
+    return state;
 }
 
 std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine,

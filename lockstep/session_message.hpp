@@ -18,7 +18,7 @@ namespace lockstep {
 class FrameBarrier;
 
 /// Message that every rank gets before the first frame. Render ranks read no file: the scene and the wall come from the
-/// master. broadcastSession() sends `scene` and `state` by themselves, because they may have gigabytes.
+/// master. broadcastSession() sends `scene` by itself, because it may have gigabytes.
 struct SessionMessage {
     base::Bytes scene;            // scene::Scene::encode
     base::Bytes wall;             // walls::Wall::encode
@@ -26,7 +26,7 @@ struct SessionMessage {
     std::vector<Fault> faults{};  // of the session's drills
     bool pointer = false;         // whether the hand is the pointer of the ranks' windows
     std::string sceneName{};      // shown in the titles of windows
-    base::Bytes state{};          // sand::Replica::encodeState() of a resumed session; empty for a new one
+    bool resumes = false;         // whether broadcastState() follows
 
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
@@ -36,7 +36,7 @@ struct SessionMessage {
         visit("faults", base::upTo(it.faults, kMostFaults));
         visit("pointer", it.pointer);
         visit("scene_name", base::text(it.sceneName, kMostText));
-        visit("state", base::block(it.state));
+        visit("resumes", it.resumes);
     }
 };
 
@@ -44,6 +44,12 @@ struct SessionMessage {
 /// refuses the session. Takes the content of `fromMaster`. `sent` is called as Cluster::broadcast() does. Collective.
 [[nodiscard]] std::optional<SessionMessage> broadcastSession(const Cluster& cluster, SessionMessage* fromMaster,
                                                              const std::function<void(double)>& sent = {});
+/// Returns the master's argument `fromMaster` on the render ranks: the state of a resumed session,
+/// sand::Replica::encodeState(). The ranks decode the scene while the master computes it. Without bytes the master
+/// refuses the session. `sent` is called as Cluster::broadcast() does. Collective, after broadcastSession() if the
+/// session resumes.
+[[nodiscard]] base::Bytes broadcastState(const Cluster& cluster, const base::Bytes& fromMaster,
+                                         const std::function<void(double)>& sent = {});
 
 /// Message of a rank before the session: where it runs, and why it cannot take part, if it cannot.
 struct Readiness {

@@ -64,6 +64,33 @@ std::function<void(double)> printed(std::string phase, std::string what) {
             })](double share) mutable { progress.done(share); };
 }
 
+/// Makes the master's sand while the ranks make theirs. Returns the error if it fails: the ranks then still report
+/// whether they are ready.
+std::exception_ptr makeSand(const lockstep::Cluster& cluster, master::ProgramOptions& options, master::World& world,
+                            std::optional<master::MasterSand>& sand) {
+    std::exception_ptr failed;
+    const bool resumes = world.stopped.has_value();
+    base::Bytes state;
+    try {
+        if (resumes) {
+            state = master::resumeSand(cluster, world, options);
+        }
+    } catch (...) {
+        failed = std::current_exception();
+    }
+    if (resumes) {
+        (void)lockstep::broadcastState(cluster, state, printed("broadcast_sand", "sends the sand to the ranks"));
+    }
+    try {
+        if (failed == nullptr) {
+            sand.emplace(master::sandOf(options.session, world.scene));
+        }
+    } catch (...) {
+        failed = std::current_exception();
+    }
+    return failed;
+}
+
 /// `last` gets a checkpoint that was still being written at the end.
 int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options, LastCheckpoint& last) {
     std::optional<master::World> world;
@@ -84,12 +111,7 @@ int runSession(const lockstep::Cluster& cluster, master::ProgramOptions& options
         (void)lockstep::broadcastSession(cluster, &world->message,
                                          printed("broadcast", "sends the scene to the ranks"));
         sessionOpen = true;
-        std::exception_ptr failed;
-        try {
-            sand.emplace(master::sandOf(options.session, world->scene));  // while the ranks make theirs
-        } catch (...) {
-            failed = std::current_exception();  // the ranks still report whether they are ready
-        }
+        const std::exception_ptr failed = makeSand(cluster, options, *world, sand);
         const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0},
                                                      printed("ranks", "the ranks make their sand"));
         if (failed) {

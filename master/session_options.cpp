@@ -49,10 +49,11 @@ std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::
     return steps;
 }
 
-MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene) {
+MasterSand sandOf(const SessionOptions& options, scene::Scene& scene) {
     const ResumedSession* resumed = options.record.resumed.get();
-    return resumed == nullptr ? MasterSand(sand::Replica(scene, options.executor), faultsOf(options.drills))
-                              : MasterSand(std::move(*resumed->sand), faultsOf(options.drills), resumed->edits);
+    return resumed == nullptr
+               ? MasterSand(sand::Replica::takingHeightsOf(scene, options.executor), faultsOf(options.drills))
+               : MasterSand(std::move(*resumed->sand), faultsOf(options.drills), resumed->edits);
 }
 
 }  // namespace master

@@ -55,6 +55,6 @@ struct SessionOptions {
 /// sandOf() the sand of the scene, or the sand of the resumed session, which it takes.
 [[nodiscard]] std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene,
                                                   Edits& edits);
-[[nodiscard]] MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene);
+[[nodiscard]] MasterSand sandOf(const SessionOptions& options, scene::Scene& scene);
 
 }  // namespace master

@@ -73,27 +73,18 @@ void sayResumed(const ResumedSession& resumed) {
                     resumed.replayedSteps);
 }
 
-/// Finds the place where the session in --out stopped, if there is one, and returns its scene. Tells the ranks of
-/// `cluster` the progress.
-std::optional<scene::Scene> resume(const lockstep::Cluster& cluster, const MemoryUse& use, ProgramOptions& options) {
+/// Opens the session in --out, if there is one.
+std::optional<StoppedSession> openStopped(const MemoryUse& use, const ProgramOptions& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
     if (options.session.record.journal.policy == JournalPolicy::off) {
         throw base::InputError("--resume needs the journal of the session; leave out --journal off");
     }
-    std::optional<ResumedSession> resumed = readSession(
-        journal, options.scene,
-        {.progress = {.read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
-                      .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")},
-         .executor = options.session.executor,
-         .check = [&](const journal::JournalReader& reader) { requireMemoryOfJournal(use, reader); }});
-    cluster.progressEnds();
-    if (!resumed) {
+    std::optional<StoppedSession> stopped = openSession(
+        journal, options.scene, [&](const journal::JournalReader& reader) { requireMemoryOfJournal(use, reader); });
+    if (!stopped) {
         host::printLine("{}: nothing to resume; the session begins", journal.string());
-        return std::nullopt;
     }
-    scene::Scene scene = std::exchange(resumed->scene, scene::Scene());  // not kept twice
-    options.session.record.resumed = std::make_shared<const ResumedSession>(std::move(*resumed));
-    return scene;
+    return stopped;
 }
 
 /// Returns the scene of the file `file`. Tells the ranks of `cluster` the progress.
@@ -153,14 +144,13 @@ scene::Scene openRecording(const MemoryUse& use, ProgramOptions& options) {
     return session.recording->scene();
 }
 
-/// Returns the scene of --scene, of the journal that is replayed, or of the session that is resumed.
-scene::Scene loadScene(const lockstep::Cluster& cluster, const MemoryUse& use, ProgramOptions& options) {
+/// Returns the scene of --scene, of the journal that is replayed, or of the session `stopped` that is resumed.
+scene::Scene loadScene(const lockstep::Cluster& cluster, const MemoryUse& use, ProgramOptions& options,
+                       std::optional<StoppedSession>& stopped) {
     options.session.record.journal.partBytes = options.partMegabytes << 20;
-    if (options.resume) {
-        if (std::optional<scene::Scene> scene = resume(cluster, use, options)) {
-            options.scene = options.scene.empty() ? options.out : options.scene;  // for error messages
-            return std::move(*scene);
-        }
+    if (stopped) {
+        options.scene = options.scene.empty() ? options.out : options.scene;  // for error messages
+        return std::exchange(stopped->scene, scene::Scene());                 // not kept twice
     }
     if (!options.replay.empty()) {
         return openRecording(use, options);
@@ -233,8 +223,7 @@ void chooseView(ProgramOptions& options, const World& world) {
     if (!options.view.empty()) {
         desk.view = walls::Orbit::parse(options.view, "--view");
     }
-    desk.visibleTool =
-        desk.visibleTool && options.session.record.resumed == nullptr;  // a person may have chosen another
+    desk.visibleTool = desk.visibleTool && !world.stopped;  // a person may have chosen another
     desk.pattern = lockstep::parsePattern(options.pattern);
     desk.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
     for (const std::string& layer : options.layers) {
@@ -256,7 +245,7 @@ std::vector<Drill> drillsOf(const ProgramOptions& options, const World& world) {
     for (const std::string& text : options.injections) {
         drills.push_back({text, parseFault(text, targets)});
     }
-    return withoutDone(std::move(drills), options.out, options.session.record.resumed != nullptr);
+    return withoutDone(std::move(drills), options.out, world.stopped.has_value());
 }
 
 }  // namespace
@@ -268,9 +257,10 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
     walls::Wall wall = loadWall(options);
     const JournalOptions& journal = options.session.record.journal;
     const MemoryUse use{cluster.hosts(), wall, journal.policy != JournalPolicy::off && journal.checkpointSeconds > 0};
-    scene::Scene scene = loadScene(cluster, use, options);
+    std::optional<StoppedSession> stopped = options.resume ? openStopped(use, options) : std::nullopt;
+    scene::Scene scene = loadScene(cluster, use, options, stopped);
     requireMemory(use, scene, options.scene + options.replay);
-    World world{std::move(scene), std::move(wall), {}};
+    World world{std::move(scene), std::move(wall), {}, std::move(stopped)};
     if (world.scene.packed == nullptr) {  // the scene of a resumed session is still packed
         world.scene.pack();
     }
@@ -284,23 +274,8 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
     chooseHand(options);
     chooseView(options, world);
     session.drills = drillsOf(options, world);
-    // The sand, and that before the last stroke, take about as much as the start.
-    const auto stateOf = [&](const ResumedSession& resumed) {
-        return resumed.sand->encodeState(world.scene.packed->size() * 9 / 4);
-    };
-    world.message = {world.scene.encode(),
-                     world.wall.encode(),
-                     session.frameTimeout,
-                     {},
-                     session.pointer,
-                     sceneName(options),
-                     session.record.resumed ? stateOf(*session.record.resumed) : base::Bytes()};
-    if (session.record.resumed) {
-        session.record.resumed->check->require(world.scene,
-                                               told(cluster, "read", "reads the scene", "the reading of its scene"));
-        cluster.progressEnds();
-        sayResumed(*session.record.resumed);
-    }
+    world.message = {world.scene.encode(), world.wall.encode(), session.frameTimeout,     {},
+                     session.pointer,      sceneName(options),  world.stopped.has_value()};
     for (const Drill& drill : session.drills) {
         world.message.faults.push_back(drill.fault);
     }
@@ -308,6 +283,22 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
         host::printLine("{}: warning: {}", options.wall, warning);
     }
     return world;
+}
+
+base::Bytes resumeSand(const lockstep::Cluster& cluster, World& world, ProgramOptions& options) {
+    const StoppedSession stopped = std::move(world.stopped.value());
+    cluster.mayTakeLong(true);  // until broadcastState()
+    ResumedState resumed =
+        resumeSession(stopped, world.scene,
+                      {.read = told(cluster, "read_journal", "reads the journal", "the reading of its journal"),
+                       .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")},
+                      options.session.executor);
+    cluster.progressEnds();
+    stopped.check->require(world.scene, told(cluster, "read", "reads the scene", "the reading of its scene"));
+    cluster.progressEnds();
+    sayResumed(resumed.session);
+    options.session.record.resumed = std::make_shared<const ResumedSession>(std::move(resumed.session));
+    return std::move(resumed.state);
 }
 
 }  // namespace master

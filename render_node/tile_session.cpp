@@ -73,17 +73,18 @@ public:
         }
         requireMemory();
         cluster.rankProgress(kContextMade);
-        const scene::Scene scene =
-            scene::Scene::decode(message.scene, scene::Scene::Keep::packedToo,
-                                 told(cluster, kContextMade, kSceneDecoded, message.scene.size()));
-        replica_.emplace(scene, executor);
+        scene::Scene scene = scene::Scene::decode(message.scene, scene::Scene::Keep::packedToo,
+                                                  told(cluster, kContextMade, kSceneDecoded, message.scene.size()));
+        replica_ = sand::Replica::takingHeightsOf(scene, executor);
         cluster.rankProgress(kReplicaMade);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
                          lockstep::hostName(), replica_->surface().data());
         cluster.rankProgress(kPainterMade);
-        if (!message.state.empty()) {  // after the painter, because the painter's box follows from the scene's start
-            replica_->decodeState(message.state, told(cluster, kPainterMade, kStateDecoded, message.state.size()));
-        }
+    }
+
+    /// Takes the sand of a resumed session. The painter's box stays that of the scene's start.
+    void resume(const base::Bytes& state) {
+        replica_->decodeState(state, told(cluster_, kPainterMade, kStateDecoded, state.size()));
     }
 
     [[nodiscard]] const GlContext& context() const { return *context_; }
@@ -322,19 +323,29 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const base::Exec
     }
     lockstep::Readiness readiness{lockstep::hostName(), host::buildId(), "", "", {}, 0};
     std::unique_ptr<TileSession> session;
-    try {
+    const auto orRefuse = [&readiness](const auto& work) {
+        try {
+            work();
+        } catch (const std::exception& error) {
+            readiness.error = error.what();
+            readiness.mayStillCome = dynamic_cast<const base::NotYetError*>(&error) != nullptr;
+        }
+    };
+    orRefuse([&] {
         lockstep::requireStartUpLimit();
         session = std::make_unique<TileSession>(cluster, *message, backend, executor);
-        message->scene = base::Bytes();  // the session has the sand in its replica
-        message->state = base::Bytes();
         readiness.tile = session->tile();
         readiness.otherFloats = session->otherFloats();
         readiness.renderer = session->context().renderer();
         readiness.shortcomings = session->context().windows().shortcomings();
         readiness.framesToIgnore = static_cast<std::uint32_t>(session->context().windows().framesToIgnore());
-    } catch (const std::exception& error) {
-        readiness.error = error.what();
-        readiness.mayStillCome = dynamic_cast<const base::NotYetError*>(&error) != nullptr;
+    });
+    message->scene = base::Bytes();  // the session has the sand in its replica
+    if (message->resumes) {
+        const base::Bytes state = lockstep::broadcastState(cluster, {});
+        if (readiness.error.empty() && !state.empty()) {  // the master refuses the session if it is empty
+            orRefuse([&] { session->resume(state); });
+        }
     }
     cluster.rankProgress(kStateDecoded);
     (void)lockstep::gatherReadiness(cluster, readiness);

@@ -51,8 +51,8 @@ private:
             return;
         }
         try {
-            sand::Replica sand =
-                master::sandOfCheckpoint(master::checkpointFile(journal_, found->first), reader_.header(), start_);
+            sand::Replica sand = start_;
+            master::replaceByCheckpoint(master::checkpointFile(journal_, found->first), reader_.header(), sand);
             found->second =
                 sand.stateHash() == replica.stateHash() ? "the replay's sand" : "differs from the replay's sand";
         } catch (const base::FormatError& error) {

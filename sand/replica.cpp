@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -57,6 +58,10 @@ struct Hashed {
 }  // namespace
 
 Replica::Replica(const Start& start, const base::Executor* executor) : Replica(start, makeSurface(start, executor)) {}
+
+Replica Replica::takingHeightsOf(Start& start, const base::Executor* executor) {
+    return {start, makeSurfaceOfTaken(start, executor)};
+}
 
 Replica::Replica(const Start& start, std::unique_ptr<Surface> surface)
     : rules_(start.rules),
@@ -331,16 +336,39 @@ std::uint64_t Replica::movementDigest() const {
 
 StateHead Replica::head() const { return {stepNumber_, probe_, heading_, engaged_, owed_, rules_.tuning}; }
 
-StateCopy Replica::copyState() const { return stateOf({copySand(), surface_->kept()}); }
-
-StateCopy Replica::beginCopy() const { return stateOf(surface_->beginCopy()); }
-
-StateCopy Replica::stateOf(Surface::Copies copies) const {
+base::Bytes Replica::encodedMovement() const {
     base::ByteWriter movement;
     if (surface_->movement() != nullptr) {
         surface_->movement()->encode(movement);
     }
-    return {base::encoded(head()), movement.take(), std::move(copies.kept), std::move(copies.sand)};
+    return movement.take();
+}
+
+StateCopy Replica::copyState() const {
+    StateCopy copy = beginCopy();
+    while (!copy.complete()) {
+        (void)continueCopy(std::numeric_limits<std::int64_t>::max());
+    }
+    return copy;
+}
+
+StateCopy Replica::beginCopy() const {
+    Surface::Copies copies = surface_->beginCopy();
+    return {base::encoded(head()), encodedMovement(), std::move(copies.kept), std::move(copies.sand)};
+}
+
+base::Bytes Replica::encodeState(std::size_t expected) const {
+    base::ByteWriter writer;
+    writer.reserve(expected);
+    writer.putBytes(base::encoded(head()));
+    writer.putBlock(encodedMovement());
+    const std::uint64_t stroke = writer.beginBlock();
+    if (canUndo()) {
+        surface_->encodeKept(writer);
+    }
+    writer.endBlock(stroke);
+    surface_->encodeInto(writer);
+    return writer.take();
 }
 
 void StateCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const {
@@ -354,9 +382,8 @@ void StateCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>
     sand->encodeInto(writer, between);
 }
 
-base::Bytes StateCopy::encode(const std::function<void()>& between, std::size_t expected) const {
+base::Bytes StateCopy::encode(const std::function<void()>& between) const {
     base::ByteWriter writer;
-    writer.reserve(expected);
     encodeInto(writer, between);
     return writer.take();
 }
@@ -369,19 +396,13 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes, const std::functi
     const std::size_t tiles = grid ? static_cast<std::size_t>(hashTiles().tileCount()) : 0;
     const Movement movement = Movement::decode(reader.getBlock(), head.number, tiles);
     const auto beforeStroke = reader.getBlock();
-    const SurfaceReader read = surface_->readerThatCalls(decoded);
-    // Decode the kept sand now, because at the undo it would be too late to refuse it.
-    const auto stroke = beforeStroke.empty() ? nullptr : read(beforeStroke);
-    const auto sand = read(reader.rest());
+    const std::function<void()> replace = surface_->decode(reader.rest(), beforeStroke, decoded);
     // From here on only std::bad_alloc can be thrown.
     surface_->forget();    // before the sand changes, so that nothing of it is kept
     surface_->follow({});  // the sand may have been wrong
     rules_.tuning = head.tuning;
     surface_->changeRules(rules_);
-    surface_->replace(*sand);
-    if (stroke) {
-        surface_->keep(*stroke);
-    }
+    replace();
     (void)surface_->hash();  // so that the next step does not count as the one that changed this sand
     surface_->resumeMovement(movement);
     stepNumber_ = head.number;

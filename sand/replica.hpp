@@ -60,8 +60,8 @@ struct StateCopy {
     /// Writes the state as compressed bytes for Replica::decodeState(). Calls `between` as SurfaceCopy::encodeInto()
     /// does. Requires complete().
     void encodeInto(base::ByteWriter& writer, const std::function<void()>& between = {}) const;
-    /// Returns what encodeInto() writes. Takes memory for `expected` bytes at once.
-    [[nodiscard]] base::Bytes encode(const std::function<void()>& between = {}, std::size_t expected = 0) const;
+    /// Returns what encodeInto() writes.
+    [[nodiscard]] base::Bytes encode(const std::function<void()>& between = {}) const;
     /// Returns how often encodeInto() calls `between`. Requires complete().
     [[nodiscard]] std::size_t stripes() const {
         return sand->stripes() + (beforeStroke == nullptr ? 0 : beforeStroke->stripes());
@@ -82,6 +82,8 @@ public:
     /// Creates the sand of `start`. `executor` shares out the work of its sweeps, and must outlive the replica. If it
     /// is null, the calling thread does all work. A TIN does not use it.
     explicit Replica(const Start& start, const base::Executor* executor = nullptr);
+    /// Creates the same, and takes the heights of `start` (Start::takeHeights()). A large field is then in memory once.
+    [[nodiscard]] static Replica takingHeightsOf(Start& start, const base::Executor* executor = nullptr);
     /// Takes `surface` as the sand of `start`. It must have been made from `start`, and may be swept in any way that
     /// gives the same sand.
     Replica(const Start& start, std::unique_ptr<Surface> surface);
@@ -194,6 +196,7 @@ public:
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copySand() const { return surface_->copy(); }
     /// Returns the function that decodes sand for this field. It stays valid after the replica is gone.
     [[nodiscard]] SurfaceReader sandReader() const { return surface_->reader(); }
+    /// Returns a copy of the whole state.
     [[nodiscard]] StateCopy copyState() const;
     /// Begins a copy of the whole state of this moment, which takes no longer for a large field. Steps copy the sand
     /// that they change, and continueCopy() copies the other sand. Another thread may have the copy when it is
@@ -207,7 +210,7 @@ public:
     [[nodiscard]] SurfaceRecorder& recorder() { return *surface_; }
     /// Returns the whole state as compressed bytes, from which another replica can continue.
     /// Takes `expected` bytes of memory at once, so that a large state is not copied while it grows.
-    [[nodiscard]] base::Bytes encodeState(std::size_t expected = 0) const { return copyState().encode({}, expected); }
+    [[nodiscard]] base::Bytes encodeState(std::size_t expected = 0) const;
     /// Replaces the whole state by what encodeState() wrote. Throws base::FormatError if the bytes are not a state of
     /// kStateVersion for this field; the replica is then unchanged. The memory that it allocates is bounded by the
     /// scene and by the length of the bytes. After std::bad_alloc, call decodeState() again before other functions.
@@ -230,7 +233,7 @@ private:
         Heading heading;
     };
     [[nodiscard]] StateHead head() const;
-    [[nodiscard]] StateCopy stateOf(Surface::Copies copies) const;
+    [[nodiscard]] base::Bytes encodedMovement() const;
     /// Returns whether `step` moves a tool that is in the sand before the step or after it.
     [[nodiscard]] bool movesTool(const Step& step) const;
     /// Returns whether `step` moves a tool that is in the sand, or gives it another shape.

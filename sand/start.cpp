@@ -96,9 +96,14 @@ void Start::decodeSand(base::ByteReader& reader, double cellSize, Keep keep,
     }
 }
 
+HeightField Start::takeHeights() {
+    volumeTaken = volumeOfHeights();
+    return std::exchange(terrain, HeightField(1, 1, terrain.cellSize()));
+}
+
 void Start::dropHeights() {
     if (tin == nullptr) {
-        terrain = HeightField(1, 1, terrain.cellSize());
+        (void)takeHeights();
         packed = nullptr;
     }
 }
@@ -139,11 +144,8 @@ std::int32_t Start::referenceHeight() const {
     if (tin != nullptr) {
         return tin->meanHeight;
     }
-    if (terrain.columns() != rules.columns || terrain.rows() != rules.rows) {
-        throw std::logic_error("Start::referenceHeight: the heights are gone");
-    }
-    const std::int64_t cells = std::int64_t{terrain.columns()} * terrain.rows();
-    return static_cast<std::int32_t>(terrain.volume() / cells);
+    const std::int64_t cells = std::int64_t{rules.columns} * rules.rows;
+    return static_cast<std::int32_t>(volumeOfHeights().value_or(0) / cells);
 }
 
 std::int64_t Start::leastBytes() const {
@@ -162,7 +164,10 @@ std::int64_t Start::bytesToDraw() const {
 }
 
 std::optional<std::int64_t> Start::volumeOfHeights() const {
-    return tin != nullptr ? std::nullopt : std::optional(terrain.volume());
+    if (tin != nullptr) {
+        return std::nullopt;
+    }
+    return volumeTaken ? volumeTaken : std::optional(terrain.volume());
 }
 
 std::int64_t Start::mostStateBytes() const {

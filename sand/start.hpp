@@ -52,6 +52,8 @@ struct Start {
     /// `terrain` as encodeCells() writes it. Encoding and all replicas of this Start share these bytes. Null unless
     /// pack() or decodeSand() has set it. `terrain` must not change while it is set.
     std::shared_ptr<const base::Bytes> packed;
+    /// Volume of the heights that takeHeights() or dropHeights() has taken [unit · cell]; nullopt before.
+    std::optional<std::int64_t> volumeTaken;
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.tuning.tool.radius * terrain.cellSize() / kProbePerCell;
@@ -72,8 +74,10 @@ struct Start {
     void decodeSand(base::ByteReader& reader, double cellSize /* [scene unit] */, Keep keep,
                     const std::function<void(std::size_t)>& decoded = {});
 
-    /// Frees the heights, because all replicas have been made. Only rules, cell size, TIN and ground stay. For a TIN,
-    /// changes nothing.
+    /// Returns the heights of a height field, for a replica. Their mean and volume stay, as does `packed`.
+    [[nodiscard]] HeightField takeHeights();
+    /// Frees the heights and `packed`, because all replicas have been made. Rules, cell size, TIN, ground, and the mean
+    /// and volume of the heights stay. For a TIN, changes nothing.
     void dropHeights();
 
     /// Returns the heights that the sand begins with. Throws std::logic_error for a TIN, which gets its triangles from
@@ -82,8 +86,7 @@ struct Start {
     /// Returns the middle of a height field with its rock and walls, at most `most` cells along a side; nullopt for a
     /// TIN.
     [[nodiscard]] std::optional<Start> middle(int most) const;
-    /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it. Throws
-    /// std::logic_error after dropHeights().
+    /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
 
     /// Returns a lower bound of the memory for a replica and this Start [byte].

@@ -17,8 +17,8 @@ class PackedHeights {
 public:
     explicit PackedHeights(const Start& start)
         : packed_(start.packed),
-          columns_(start.terrain.columns()),
-          rows_(start.terrain.rows()),
+          columns_(start.rules.columns),
+          rows_(start.rules.rows),
           cellSize_(start.terrain.cellSize()) {}
     const HeightField& field() {
         if (!field_) {
@@ -47,8 +47,16 @@ std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* e
                                                grid::Erosion::Options{.executor = executor}, start.packed);
 }
 
+std::unique_ptr<Surface> makeSurfaceOfTaken(Start& start, const base::Executor* executor) {
+    if (start.tin != nullptr) {
+        return makeSurface(start, executor);
+    }
+    return std::make_unique<grid::GridSurface>(start.rules, start.takeHeights(), start.ground,
+                                               grid::Erosion::Options{.executor = executor}, start.packed);
+}
+
 std::int64_t volumeOf(const Start& start) {
-    return start.tin != nullptr ? makeSurface(start)->volume() : start.terrain.volume();
+    return start.tin != nullptr ? makeSurface(start)->volume() : start.volumeOfHeights().value();
 }
 
 HeightAt startHeights(const Start& start, Heights when) {
@@ -56,8 +64,11 @@ HeightAt startHeights(const Start& start, Heights when) {
         const std::shared_ptr<const Surface> tin = makeSurface(start);
         return [tin](double x, double y) { return tin->height(x, y); };
     }
-    if (when == Heights::atFirstUse && start.packed != nullptr) {
+    if (start.packed != nullptr && (when == Heights::atFirstUse || start.volumeTaken)) {
         const auto packed = std::make_shared<PackedHeights>(start);
+        if (when == Heights::now) {
+            (void)packed->field();
+        }
         return [packed](double x, double y) { return packed->field().interpolated(x, y); };
     }
     const auto field =

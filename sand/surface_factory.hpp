@@ -15,6 +15,9 @@ namespace sand {
 /// outlive the sand. If it is null, the calling thread does all work.
 [[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* executor = nullptr);
 
+/// Returns the same, and takes the heights of `start` (Start::takeHeights()) in place of a copy.
+[[nodiscard]] std::unique_ptr<Surface> makeSurfaceOfTaken(Start& start, const base::Executor* executor = nullptr);
+
 /// Returns the exact volume of the sand that `start` begins with, in the unit of Replica::volume(). Triangulates a TIN.
 [[nodiscard]] std::int64_t volumeOf(const Start& start);
 

@@ -256,7 +256,7 @@ void serve(const ServerOptions& options) {
     double packed = 0;  // stripes of heights that are compressed
     scene.pack([&] { loading.setDone(kScene + (1 - kScene) * ++packed / stripes); });
     const host::WorkerPool pool(options.sandThreads);
-    std::optional<sand::Replica> replica(std::in_place, scene, pool.lend());
+    auto replica = std::optional(sand::Replica::takingHeightsOf(scene, pool.lend()));
     // A device that is open must be closed in order.
     signals.hold([] { print("it ends as soon as the device is open; a second signal ends it at once"); });
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);

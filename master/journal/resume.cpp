@@ -176,38 +176,46 @@ struct Walk {
     void operator()(const journal::JournalForce& force) { session.forceShare = force.share; }
 };
 
-/// Returns the sand of a checkpoint, or nullopt after a line that says why it is left out. Only the checkpoint is left
-/// out if this machine has no memory: without memory for a step, the replay cannot go on from any checkpoint.
-std::optional<sand::Replica> usableCheckpoint(const fs::path& file, const journal::JournalHeader& header,
-                                              const sand::Replica& start) {
+/// Gives `restored` the sand of the checkpoint of step `at`. Returns false after a line that says why it is left out;
+/// the replica may then have any sand. Only the checkpoint is left out if this machine has no memory: without memory
+/// for a step, the replay cannot go on from any checkpoint.
+bool useCheckpoint(const fs::path& journal, std::uint64_t at, const Restoring& how, RestoredSand& restored) {
+    const fs::path file = checkpointFile(journal, at);
     try {
-        return sandOfCheckpoint(file, header, start);
+        base::Bytes state = replaceByCheckpoint(file, how.opened->header(), restored.replica);
+        restored.checkpointStep = at;
+        if (how.keepState) {
+            restored.state = std::move(state);
+        }
+        return true;
     } catch (const base::FormatError& error) {
         host::printLine("{}: {}; it is left out", file.string(), error.what());
     } catch (const std::bad_alloc&) {
         host::printLine("{}: this machine has no memory for it; it is left out", file.string());
     }
-    return std::nullopt;
+    return false;
 }
 
 }  // namespace
 
-sand::Replica sandOfCheckpoint(const fs::path& file, const journal::JournalHeader& header, const sand::Replica& start) {
-    const Checkpoint checkpoint = readCheckpoint(file);
-    if (checkpoint.session != header.session || checkpoint.sceneDigest != start.rules().digest()) {
+base::Bytes replaceByCheckpoint(const fs::path& file, const journal::JournalHeader& header, sand::Replica& replica) {
+    Checkpoint checkpoint = readCheckpoint(file);
+    if (checkpoint.session != header.session || checkpoint.sceneDigest != replica.rules().digest()) {
         throw base::FormatError("is of another session");
     }
-    sand::Replica replica = start;
     replica.decodeState(checkpoint.state);
     if (replica.stepNumber() != checkpoint.step || replica.stateHash() != checkpoint.stateHash) {
         throw base::FormatError("its sand differs from its hash");
     }
-    return replica;
+    return std::move(checkpoint.state);
 }
 
 void replayFurther(const fs::path& journal, std::uint64_t step, RestoredSand& restored, const Restoring& how) {
     Replay(journal, step, restored, how).run();
     restored.replayedSteps = restored.replica.stepNumber() - restored.checkpointStep;
+    if (restored.replayedSteps > 0) {
+        restored.state = {};
+    }
 }
 
 RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Restoring& how) {
@@ -215,58 +223,67 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
         how.opened != nullptr ? std::nullopt : std::optional(openJournal(journal));
     Restoring with = how;
     with.opened = own ? &*own : how.opened;
-    const journal::JournalReader& head = *with.opened;
-    sand::Replica start = how.start != nullptr ? sand::Replica(*how.start, how.executor)
-                                               : sand::Replica(journal::sceneOf(head), how.executor);
-    const std::int64_t volume = start.volume() + start.outflow();
+    const auto begun = [&] {
+        return how.start != nullptr ? sand::Replica(*how.start, how.executor)
+                                    : sand::Replica(journal::sceneOf(*with.opened), how.executor);
+    };
+    // A checkpoint replaces this sand. Two replicas of a large field would take seconds more.
+    std::optional<RestoredSand> restored(RestoredSand{begun(), 0, 0, 0, {}, {}});
+    const std::int64_t volume = restored->replica.volume() + restored->replica.outflow();
     for (const std::uint64_t at : checkpointsOf(journal)) {
         if (at > std::min(step, how.newestCheckpoint)) {
             continue;
         }
-        const fs::path file = checkpointFile(journal, at);
-        std::optional<sand::Replica> replica = usableCheckpoint(file, head.header(), start);
-        if (!replica) {
-            continue;
-        }
-        try {
-            RestoredSand restored{std::move(*replica), at, 0, volume, {}};
-            replayFurther(journal, step, restored, with);
-            return restored;
-        } catch (const OtherSand& error) {
-            host::printLine("{}: it is left out: {}", file.string(), error.what());
-            if (how.progress) {
-                how.progress(1);  // the next checkpoint is read without progress
+        if (useCheckpoint(journal, at, with, *restored)) {
+            try {
+                replayFurther(journal, step, *restored, with);
+                restored->volume = volume;
+                return std::move(*restored);
+            } catch (const OtherSand& error) {
+                host::printLine("{}: it is left out: {}", checkpointFile(journal, at).string(), error.what());
+                if (how.progress) {
+                    how.progress(1);  // the next checkpoint is read without progress
+                }
             }
         }
+        restored.reset();  // before the memory for the next replica is taken
+        restored.emplace(RestoredSand{begun(), 0, 0, 0, {}, {}});
     }
-    RestoredSand restored{std::move(start), 0, 0, volume, {}};
-    replayFurther(journal, step, restored, with);
-    return restored;
+    restored->volume = volume;
+    replayFurther(journal, step, *restored, with);
+    return std::move(*restored);
 }
 
-std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene, const Resuming& how) {
-    const ResumeProgress& progress = how.progress;
+std::optional<StoppedSession> openSession(const fs::path& journal, const std::string& scene,
+                                          const std::function<void(const journal::JournalReader&)>& check) {
     std::error_code none;
     if (!fs::exists(fs::symlink_status(journal, none))) {
         return std::nullopt;
     }
-    const journal::JournalReader opened = openJournal(journal);
-    if (how.check) {
-        how.check(opened);
+    StoppedSession stopped{journal, openJournal(journal), {}, {}};
+    if (check) {
+        check(stopped.opened);
     }
-    journal::JournalReader reader = openAgain(journal, opened);
-    ResumedSession session;
-    session.check =
-        std::make_shared<SceneCheck>(scene, sand::FieldSize::of(journal::rulesOf(reader)), reader.place().journal);
-    session.scene = journal::sceneOf(reader, scene::Scene::Keep::packedToo);
-    session.scene.material = session.material = reader.header().material.value_or(scene::Material());
+    stopped.check = std::make_unique<SceneCheck>(scene, sand::FieldSize::of(journal::rulesOf(stopped.opened)),
+                                                 stopped.opened.place().journal);
+    stopped.scene = journal::sceneOf(stopped.opened, scene::Scene::Keep::packedToo);
+    stopped.scene.material = stopped.opened.header().material.value_or(scene::Material());
+    return stopped;
+}
+
+namespace {
+
+/// Reads the records of `stopped` into `session`. Returns the newest step of a checkpoint that may be used.
+std::uint64_t walk(const StoppedSession& stopped, const std::function<void(double)>& read, ResumedSession& session) {
+    const fs::path& journal = stopped.journal;
+    journal::JournalReader reader = openAgain(journal, stopped.opened);
     Walk walk{session, journal, {}};
     const auto all = static_cast<double>(allBytes(journal));
     try {
         while (const auto record = reader.next()) {
             std::visit(walk, *record);
-            if (progress.read) {
-                progress.read(partRead(reader, all));
+            if (read) {
+                read(partRead(reader, all));
             }
         }
     } catch (const base::InputError& error) {
@@ -275,28 +292,42 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
                         "--resume continues it",
                         error.what(), journal.string()));
     }
-    if (progress.read) {
-        progress.read(1);
+    if (read) {
+        read(1);
     }
     session.place = reader.place();
     session.cutBytes = reader.tornBytes();
-    RestoredSand restored = restoreSand(journal, session.step,
-                                        {.executor = how.executor,
-                                         .start = &session.scene,
-                                         .opened = &opened,
-                                         .newestCheckpoint = newestCheckpointFor(walk.doubted),
+    return newestCheckpointFor(walk.doubted);
+}
+
+}  // namespace
+
+ResumedState resumeSession(const StoppedSession& stopped, const scene::Scene& scene, const ResumeProgress& progress,
+                           const base::Executor* executor) {
+    ResumedSession session;
+    session.material = scene.material;
+    const std::uint64_t newest = walk(stopped, progress.read, session);
+    RestoredSand restored = restoreSand(stopped.journal, session.step,
+                                        {.executor = executor,
+                                         .start = &scene,
+                                         .opened = &stopped.opened,
+                                         .newestCheckpoint = newest,
+                                         .keepState = true,
                                          .progress = [&](double share) {
-                                             session.check->requireIfRead(session.scene);
+                                             stopped.check->requireIfRead(scene);
                                              if (progress.replayed) {
                                                  progress.replayed(share);
                                              }
                                          }});
     session.outvoted = restored.outvoted;
     session.hash = restored.replica.stateHash();
-    session.sand = std::make_shared<sand::Replica>(std::move(restored.replica));
     session.checkpointStep = restored.checkpointStep;
     session.replayedSteps = restored.replayedSteps;
-    return session;
+    // The sand, and that before the last stroke, take about as much as the start.
+    const std::size_t expected = scene.packed == nullptr ? 0 : scene.packed->size() * 9 / 4;
+    base::Bytes state = restored.state.empty() ? restored.replica.encodeState(expected) : std::move(restored.state);
+    session.sand = std::make_shared<sand::Replica>(std::move(restored.replica));
+    return {std::move(session), std::move(state)};
 }
 
 }  // namespace master

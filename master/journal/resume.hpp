@@ -29,6 +29,7 @@ struct RestoredSand {
     std::uint64_t checkpointStep = 0;  // step of the checkpoint that was used; 0 for the scene itself
     std::uint64_t replayedSteps = 0;   // steps that were replayed after it
     std::int64_t volume = 0;           // with outflow, of the scene's start; every later volume is the same
+    base::Bytes state;                 // of the replica, if Restoring::keepState asks for it and it is at hand
     std::optional<Outvoted> outvoted;  // if the ranks still had the sand of a wrong majority at the journal's end
 };
 
@@ -41,6 +42,7 @@ struct Restoring {
     std::uint64_t newestCheckpoint = std::numeric_limits<std::uint64_t>::max();
     // Another thread writes the journal. So nothing behind the wanted step is read, because it may be half written.
     bool beingWritten = false;
+    bool keepState = false;  // sets RestoredSand::state, if no step is replayed after the checkpoint
     // Called after each step and after each record, with the last step; may throw to end the replay.
     std::function<void(std::uint64_t)> each{};
     // Called after each step and after each record, with the part of the records that are read and of the steps that
@@ -66,14 +68,31 @@ inline constexpr std::uint64_t kYoungCheckpoint = 60;
 void replayFurther(const std::filesystem::path& journal, std::uint64_t step, RestoredSand& restored,
                    const Restoring& how = {});
 
-/// Returns the sand of the checkpoint `file`. `header` is the header of the session's journal, and `start` the sand at
-/// its start. Throws base::FormatError if the checkpoint is damaged or belongs to another session.
-[[nodiscard]] sand::Replica sandOfCheckpoint(const std::filesystem::path& file, const journal::JournalHeader& header,
-                                             const sand::Replica& start);
+/// Gives `replica` the sand of the checkpoint `file`. `header` is the header of the session's journal, and `replica`
+/// must have been made of its scene. Returns the state in the checkpoint. Throws base::FormatError if the checkpoint is
+/// damaged or belongs to another session; the replica may then have any sand.
+base::Bytes replaceByCheckpoint(const std::filesystem::path& file, const journal::JournalHeader& header,
+                                sand::Replica& replica);
 
-/// A session that has stopped, with everything that is needed to continue it.
-struct ResumedSession {
+/// A session that has stopped, whose journal is open.
+struct StoppedSession {
+    std::filesystem::path journal;  // its file
+    journal::JournalReader opened;  // of the journal, before its first record
     scene::Scene scene;
+    /// Reads the file of the scene in a thread. Call require() before the session begins.
+    std::unique_ptr<SceneCheck> check;
+};
+
+/// Opens the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
+/// is named, it must describe the session's scene, which StoppedSession::check compares. `check` is called with the
+/// journal before its scene is decoded, unless it is empty; it throws if the scene does not fit. Throws
+/// base::InputError if the journal cannot be read.
+[[nodiscard]] std::optional<StoppedSession> openSession(
+    const std::filesystem::path& journal, const std::string& scene,
+    const std::function<void(const journal::JournalReader&)>& check = {});
+
+/// Everything that is needed to continue a session that has stopped, beside its scene.
+struct ResumedSession {
     scene::Material material;     // with the operator's changes
     journal::JournalPlace place;  // place at which the journal continues
     std::uint64_t frame = 0;      // last frame in the journal
@@ -86,29 +105,25 @@ struct ResumedSession {
     std::int64_t cutBytes = 0;            // [byte], behind the last whole record of the journal; ignored
     std::uint64_t checkpointStep = 0, replayedSteps = 0;
     std::optional<Outvoted> outvoted;  // if the wall had shown the sand of a wrong majority when the session stopped
-    /// Reads the file of the scene while the caller encodes the sand. Call require() before the session begins.
-    std::shared_ptr<SceneCheck> check{};
 };
 
-/// Functions that readSession() calls with the part of some work that is done, 0 to 1. Each may be empty. Each is
+/// Functions that resumeSession() calls with the part of some work that is done, 0 to 1. Each may be empty. Each is
 /// called with 1 when its work ends. A replay that begins again calls `replayed` with a smaller part.
 struct ResumeProgress {
     std::function<void(double)> read{};      // reading the records of the journal
     std::function<void(double)> replayed{};  // replaying the steps of the journal
 };
 
-/// Options of readSession().
-struct Resuming {
-    ResumeProgress progress{};
-    const base::Executor* executor = nullptr;  // for the replica
-    /// Called with the journal before its scene is decoded. It throws if the scene does not fit.
-    std::function<void(const journal::JournalReader&)> check{};
+/// A resumed session with the state of its sand, sand::Replica::encodeState().
+struct ResumedState {
+    ResumedSession session;
+    base::Bytes state;
 };
 
-/// Reads the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
-/// is named, it must describe the session's scene, which ResumedSession::check compares. Throws base::InputError if the
-/// session cannot be continued; the text says what can be done with the journal.
-[[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
-                                                        const Resuming& how = {});
+/// Computes the sand of `stopped` from the newest checkpoint and the later steps. `scene` is its scene. `executor` is
+/// for the replica. Throws base::InputError if the session cannot be continued; the text says what can be done with the
+/// journal.
+[[nodiscard]] ResumedState resumeSession(const StoppedSession& stopped, const scene::Scene& scene,
+                                         const ResumeProgress& progress = {}, const base::Executor* executor = nullptr);
 
 }  // namespace master

@@ -86,13 +86,13 @@ std::size_t PackedCells::across() const {
 }
 
 /// Returns the numbers row by row, after one row that holds what the differences of the first row refer to.
-std::vector<std::int32_t> PackedCells::plainOf(const CellArray& grid) const {
+std::vector<std::int32_t> PackedCells::plainOf(const CellArray& grid, int first) const {
     const std::size_t width = across(), rows = static_cast<std::size_t>(cells_.y1 - cells_.y0);
     const std::size_t groups = (width * rows + kNumbers - 1) / kNumbers;
     std::vector<std::int32_t> plain(width + groups * kNumbers);
     std::int32_t* to = plain.data() + width;
     for (int y = cells_.y0; y < cells_.y1; ++y, to += width) {
-        const std::int32_t* const row = grid.row(y);
+        const std::int32_t* const row = grid.row(y - first);
         std::int32_t* const end = std::copy(row + cells_.x0, row + cells_.x1, to);
         std::fill(end, to + width, row[cells_.x1 - 1]);
     }
@@ -104,9 +104,9 @@ std::vector<std::int32_t> PackedCells::plainOf(const CellArray& grid) const {
     return plain;
 }
 
-PackedCells::PackedCells(const CellArray& grid, const CellRect& cells) : cells_(cells) {
+PackedCells::PackedCells(const CellArray& grid, const CellRect& cells, int first) : cells_(cells) {
     static_assert(kLanes == kVector && kGroup == kVectors);
-    const std::vector<std::int32_t> plain = plainOf(grid);
+    const std::vector<std::int32_t> plain = plainOf(grid, first);
     const std::size_t width = across();
     first_ = plain[0];
     groups_.resize((plain.size() - width) / kNumbers);

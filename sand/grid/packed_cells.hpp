@@ -15,8 +15,9 @@ namespace sand::grid {
 /// It never changes, so any thread may read it.
 class PackedCells {
 public:
-    /// Copies the numbers of `cells`, which must not be empty and may include ghost cells.
-    PackedCells(const CellArray& grid, const CellRect& cells);
+    /// Copies the numbers of `cells`, which must not be empty and may include ghost cells. Row 0 of `grid` has row
+    /// `first` of the field.
+    PackedCells(const CellArray& grid, const CellRect& cells, int first = 0);
 
     [[nodiscard]] const CellRect& cells() const { return cells_; }
     /// Returns whether all numbers are 0.
@@ -48,7 +49,7 @@ private:
     };
 
     [[nodiscard]] std::size_t across() const;  // numbers in a row, with repeated ones
-    [[nodiscard]] std::vector<std::int32_t> plainOf(const CellArray& grid) const;
+    [[nodiscard]] std::vector<std::int32_t> plainOf(const CellArray& grid, int first) const;
     [[nodiscard]] std::vector<std::int32_t> unpacked() const;
 
     CellRect cells_;

@@ -1,42 +1,79 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/grid/snapshot.hpp"
 
-#include <cstdlib>
 #include <utility>
-
-#include "sand/model/grid_codec.hpp"
-
 namespace sand::grid {
 namespace {
 
-/// Throws unless volume and outflow are possible for a field whose heights are within ±kMaxHeight.
-void requirePossible(const Snapshot& copy) {
-    const std::int64_t most =
-        std::int64_t{kMaxHeight} * copy.field.columns() * copy.field.rows();  // [unit · cell], at most 2^56
-    const bool possible = copy.outflow >= -2 * most && copy.outflow <= 2 * most;
-    if (!possible || std::abs(copy.field.volume() + copy.outflow) > most) {
-        throw base::FormatError("sand whose outflow is more than all of its sand");
-    }
-}
+/// Checks the heights of sand, row by row.
+class PossibleSand {
+public:
+    PossibleSand(const SandLimits& limits, std::int64_t outflow) : limits_(limits), sum_(outflow), outflow_(outflow) {}
 
-/// Throws if the surface of the sand lies below rock. Sand of negative thickness would draw sand out of its neighbours
-/// until heights overflow.
-void requireAbove(const Ground& ground, const HeightField& field) {
-    for (int y = 0; y < field.rows(); ++y) {
-        for (int x = 0; x < field.columns(); ++x) {
-            if (ground.sand(x, y, field.height(x, y)) < 0) {
+    /// Throws if the surface of the sand lies below rock. Sand of negative thickness would draw sand out of its
+    /// neighbours until heights overflow.
+    void take(int y, const std::int32_t* row) {
+        for (int x = 0; x < limits_.faces.columns; ++x) {
+            sum_ += row[x];
+            if (limits_.ground != nullptr && limits_.ground->sand(x, y, row[x]) < 0) {
                 throw base::FormatError("rock above the sand that lies on it");
             }
         }
     }
-}
+    /// Throws unless volume and outflow are possible for a field whose heights are within ±kMaxHeight.
+    void finish() const {
+        const std::int64_t most =
+            std::int64_t{kMaxHeight} * limits_.faces.columns * limits_.faces.rows;  // [unit · cell], at most 2^56
+        const bool possible = outflow_ >= -2 * most && outflow_ <= 2 * most;
+        if (!possible || sum_ < -most || sum_ > most) {
+            throw base::FormatError("sand whose outflow is more than all of its sand");
+        }
+    }
+
+private:
+    const SandLimits& limits_;
+    std::int64_t sum_, outflow_;  // [unit · cell]
+};
 
 }  // namespace
 
+void encodeSand(const CellRect& field, const std::function<const std::int32_t*(int row)>& rowOf, const SandRest& rest,
+                base::ByteWriter& writer, const std::function<void()>& between) {
+    writer.put(rest.outflow);
+    encodeRows(field, rowOf, writer, between);
+    rest.inertia.encode(field.x1, field.y1, writer, between);
+}
+
+SandRest decodeSand(std::span<const std::uint8_t> bytes, const SandLimits& limits, const RowsToDecode& take,
+                    const std::function<void(std::size_t)>& decoded) {
+    base::ByteReader reader(bytes);
+    SandRest rest;
+    rest.outflow = reader.get<std::int64_t>();
+    PossibleSand possible(limits, rest.outflow);
+    const std::int32_t* row = nullptr;
+    const RowsToDecode checked{[&](int y) {
+                                   std::int32_t* const place = take.rowOf(y);
+                                   row = place;
+                                   return place;
+                               },
+                               [&](int y) {
+                                   possible.take(y, row);
+                                   if (take.done) {
+                                       take.done(y);
+                                   }
+                               }};
+    decodeRows(reader, {0, 0, limits.faces.columns, limits.faces.rows}, kMaxHeight, checked, decoded);
+    possible.finish();
+    rest.inertia = Inertia::decode(reader, limits.faces, decoded);
+    if (!reader.atEnd()) {
+        throw base::FormatError("sand with further bytes behind it");
+    }
+    return rest;
+}
+
 void Snapshot::encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const {
-    writer.put(outflow);
-    encodeCells(field.cells(), field.bounds(), writer, between);
-    inertia.encode(field.columns(), field.rows(), writer, between);
+    encodeSand(
+        field.bounds(), [this](int row) { return field.row(row); }, {inertia, outflow}, writer, between);
 }
 
 std::size_t Snapshot::stripes() const {
@@ -45,19 +82,9 @@ std::size_t Snapshot::stripes() const {
 
 Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, const SandLimits& limits,
                           const std::function<void(std::size_t)>& decoded) {
-    base::ByteReader reader(bytes);
-    const auto outflow = reader.get<std::int64_t>();
-    Snapshot copy(HeightField(limits.faces.columns, limits.faces.rows, limits.cellSize), {}, outflow);
-    decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells(), decoded);
-    requirePossible(copy);
-    if (limits.ground != nullptr) {
-        requireAbove(*limits.ground, copy.field);
-    }
-    copy.inertia = Inertia::decode(reader, limits.faces, decoded);
-    if (!reader.atEnd()) {
-        throw base::FormatError("sand with further bytes behind it");
-    }
-    return copy;
+    HeightField field(limits.faces.columns, limits.faces.rows, limits.cellSize);
+    SandRest rest = decodeSand(bytes, limits, {[&field](int y) { return field.row(y); }}, decoded);
+    return {std::move(field), std::move(rest.inertia), rest.outflow};
 }
 
 }  // namespace sand::grid

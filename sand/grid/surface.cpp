@@ -27,11 +27,11 @@ Erosion::Options withGround(Erosion::Options options, const Ground* ground) {
 
 }  // namespace
 
-GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
+GridSurface::GridSurface(const Rules& rules, HeightField field, std::shared_ptr<const Ground> ground,
                          const Erosion::Options& options, std::shared_ptr<const base::Bytes> start)
     : rules_(rules),
       ground_(std::move(ground)),
-      field_(field),
+      field_(std::move(field)),
       how_(options),
       erosion_(field_, rules_, withGround(options, ground_.get())),
       hash_(field_),
@@ -218,10 +218,6 @@ void GridSurface::reset() {
     (void)followed_.restored();
 }
 
-std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
-    return hasKept() ? std::make_shared<const Snapshot>(beforeStroke_.copy(field_)) : nullptr;
-}
-
 void GridSurface::putBackKept() {
     completeCopiesOf(field_.bounds());  // all fluxes change, but only the heights of the stroke
     const std::vector<CellRect> changed = beforeStroke_.changed();
@@ -294,22 +290,46 @@ std::shared_ptr<const SurfaceCopy> GridSurface::beginCopyOf(const SurfaceRecords
     return std::make_shared<const KeptCopy>(std::move(tiles), last.inertia(), last.outflow(), now);
 }
 
-SurfaceReader GridSurface::readerThatCalls(std::function<void(std::size_t)> decoded) const {
+SurfaceReader GridSurface::reader() const {
     const FieldFaces faces{field_.columns(), field_.rows(), rules_.rim, rules_.aspect};
-    return [faces, cellSize = field_.cellSize(), ground = ground_,
-            decoded = std::move(decoded)](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, {faces, cellSize, ground.get()}, decoded));
+    return [faces, cellSize = field_.cellSize(),
+            ground = ground_](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
+        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, {faces, cellSize, ground.get()}));
     };
 }
 
 void GridSurface::replace(const SurfaceCopy& copy) {
     const auto& sand = dynamic_cast<const Snapshot&>(copy);
     willBecome(sand.field);
-    field_ = sand.field;
-    erosion_.resume(sand.inertia);
-    outflow_ = sand.outflow;
+    become(HeightField(sand.field), sand.inertia, sand.outflow);
+}
+
+void GridSurface::become(HeightField&& field, const Inertia& inertia, std::int64_t outflow) {
+    field_ = std::move(field);
+    erosion_.resume(inertia);
+    outflow_ = outflow;
     touchAll();
     (void)followed_.restored();
+}
+
+void GridSurface::encodeInto(base::ByteWriter& writer) const {
+    encodeSand(field_.bounds(), [this](int row) { return field_.row(row); }, {erosion_.inertia(), outflow_}, writer,
+               {});
+}
+
+std::function<void()> GridSurface::decode(std::span<const std::uint8_t> sand, std::span<const std::uint8_t> kept,
+                                          const std::function<void(std::size_t)>& decoded) {
+    const SandLimits limits{
+        {field_.columns(), field_.rows(), rules_.rim, rules_.aspect}, field_.cellSize(), ground_.get()};
+    const auto next = std::make_shared<Snapshot>(Snapshot::decode(sand, limits, decoded));
+    // The kept sand is decoded now, because at the undo it would be too late to refuse it.
+    const auto stroke = kept.empty() ? std::make_shared<Undo>()
+                                     : std::make_shared<Undo>(Undo::decode(kept, limits, next->field, decoded));
+    return [this, next, stroke] {
+        willBecome(next->field);
+        become(std::move(next->field), next->inertia, next->outflow);
+        beforeStroke_ = std::move(*stroke);
+    };
 }
 
 std::uint64_t GridSurface::hash() {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "sand/grid/block_marks.hpp"
@@ -21,7 +24,7 @@ class GridSurface final : public Surface {
 public:
     /// `options` choose how the sand is swept; they never change the result. `ground` replaces `options.ground`, and is
     /// null without rock and wall cells. `start` is Start::packed; if it is null, the surface compresses `field`.
-    GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
+    GridSurface(const Rules& rules, HeightField field, std::shared_ptr<const Ground> ground,
                 const Erosion::Options& options, std::shared_ptr<const base::Bytes> start = nullptr);
     [[nodiscard]] std::unique_ptr<Surface> clone() const override;
 
@@ -40,17 +43,19 @@ public:
     void reset() override;
 
     void keep() override { beforeStroke_.keep(field_, erosion_.inertia(), outflow_); }
-    void keep(const SurfaceCopy& copy) override { beforeStroke_.keep(dynamic_cast<const Snapshot&>(copy), field_); }
     void forget() override { beforeStroke_.forget(); }
-    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override;
     [[nodiscard]] bool hasKept() const override { return beforeStroke_.any(); }
     void putBackKept() override;
 
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
     [[nodiscard]] Copies beginCopy() const override;
     bool continueCopy(std::int64_t cells) const override;
-    [[nodiscard]] SurfaceReader readerThatCalls(std::function<void(std::size_t)> decoded) const override;
+    [[nodiscard]] SurfaceReader reader() const override;
     void replace(const SurfaceCopy& copy) override;
+    void encodeInto(base::ByteWriter& writer) const override;
+    void encodeKept(base::ByteWriter& writer) const override { beforeStroke_.encodeInto(field_, writer); }
+    [[nodiscard]] std::function<void()> decode(std::span<const std::uint8_t> sand, std::span<const std::uint8_t> kept,
+                                               const std::function<void(std::size_t)>& decoded) override;
 
     [[nodiscard]] std::shared_ptr<SurfaceRecord> record() override;
     void follow(SurfaceRecords records) override { followed_.follow(std::move(records)); }
@@ -89,6 +94,8 @@ private:
     void willChangeHeights(const CellRect& cells);
     /// Must be called before the heights become those of `field`.
     void willBecome(const HeightField& field);
+    /// Replaces the sand by `sand`. Call willBecome() before it.
+    void become(HeightField&& field, const Inertia& inertia, std::int64_t outflow);
     /// Lets begun copies take the sand of `cells`, if they lack it.
     void completeCopiesOf(const CellRect& cells) const;
     /// Lets records forget tiles that a change of the whole field has left alone.

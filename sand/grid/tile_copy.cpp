@@ -12,8 +12,8 @@ namespace {
 using HeightsOf = std::function<const PackedCells&(std::size_t tile)>;
 
 /// Writes what Snapshot::encodeInto() writes. Unpacks one row of tiles at a time.
-void encodeTiles(const TileGrid& grid, const HeightsOf& heightsOf, std::int64_t outflow, const Inertia& inertia,
-                 base::ByteWriter& writer, const std::function<void()>& between) {
+void encodeTiles(const TileGrid& grid, const HeightsOf& heightsOf, const SandRest& rest, base::ByteWriter& writer,
+                 const std::function<void()>& between) {
     const CellRect& field = grid.field();
     CellArray window(field.x1, TileGrid::kTile);
     int first = -1;  // row of the field that row 0 of the window has
@@ -25,9 +25,7 @@ void encodeTiles(const TileGrid& grid, const HeightsOf& heightsOf, std::int64_t 
         }
         return window.row(y - first);
     };
-    writer.put(outflow);
-    encodeRows(field, rowOf, writer, between);
-    inertia.encode(field.x1, field.y1, writer, between);
+    encodeSand(field, rowOf, rest, writer, between);
 }
 
 std::size_t stripesOfTiles(const TileGrid& grid, const Inertia& inertia) {
@@ -74,7 +72,7 @@ void TileCopy::copyMore(const HeightField& field, const Erosion& erosion, std::i
 
 void TileCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>& between) const {
     encodeTiles(
-        grid_, [this](std::size_t tile) -> const PackedCells& { return heights(tile); }, outflow_, inertia_, writer,
+        grid_, [this](std::size_t tile) -> const PackedCells& { return heights(tile); }, {inertia_, outflow_}, writer,
         between);
 }
 
@@ -87,7 +85,7 @@ void KeptCopy::encodeInto(base::ByteWriter& writer, const std::function<void()>&
     const auto heightsOf = [this](std::size_t tile) -> const PackedCells& {
         return heights_[tile] != nullptr ? *heights_[tile] : now_->heights(tile);
     };
-    encodeTiles(now_->grid(), heightsOf, outflow_, inertia_, writer, between);
+    encodeTiles(now_->grid(), heightsOf, {inertia_, outflow_}, writer, between);
 }
 
 std::size_t KeptCopy::stripes() const { return stripesOfTiles(now_->grid(), inertia_); }

@@ -17,27 +17,39 @@ void Undo::Kept::putInto(HeightField& field) const {
 
 void Undo::keep(const HeightField& field, Inertia inertia, std::int64_t outflow) {
     kept_.reset();  // until all memory is there
-    Kept kept{std::move(inertia), outflow, TileGrid(field.bounds()), {}};
+    Kept kept{{std::move(inertia), outflow}, TileGrid(field.bounds()), {}};
     kept.tiles.resize(kept.grid.count());
     kept_ = std::move(kept);
 }
 
-void Undo::keep(const Snapshot& copy, const HeightField& field) {
-    keep(field, copy.inertia, copy.outflow);
-    Kept kept = std::move(*kept_);
-    kept_.reset();
-    for (std::size_t tile = 0; tile < kept.tiles.size(); ++tile) {
-        const CellRect cells = kept.grid.cellsOf(tile);
-        bool differs = false;
-        for (int y = cells.y0; y < cells.y1; ++y) {
-            differs = differs ||
-                      !std::equal(copy.field.row(y) + cells.x0, copy.field.row(y) + cells.x1, field.row(y) + cells.x0);
+Undo Undo::decode(std::span<const std::uint8_t> bytes, const SandLimits& limits, const HeightField& field,
+                  const std::function<void(std::size_t)>& decoded) {
+    Kept kept{{}, TileGrid(field.bounds()), {}};
+    kept.tiles.resize(kept.grid.count());
+    CellArray window(field.columns(), kTile);  // rows [first, first + kTile)
+    const auto keepRowOfTiles = [&](int first) {
+        kept.grid.forEach({0, first, field.columns(), first + 1}, [&](std::size_t tile) {
+            const CellRect cells = kept.grid.cellsOf(tile);
+            bool differs = false;
+            for (int y = cells.y0; y < cells.y1 && !differs; ++y) {
+                const std::int32_t* const row = window.row(y - first);
+                differs = !std::equal(row + cells.x0, row + cells.x1, field.row(y) + cells.x0);
+            }
+            if (differs) {
+                kept.tiles[tile] = std::make_shared<const PackedCells>(window, cells, first);
+            }
+        });
+    };
+    const auto rowOf = [&window](int y) { return window.row(y % kTile); };
+    const auto done = [&](int y) {
+        if ((y + 1) % kTile == 0 || y + 1 == field.rows()) {
+            keepRowOfTiles(y / kTile * kTile);
         }
-        if (differs) {
-            kept.tiles[tile] = std::make_shared<const PackedCells>(copy.field.cells(), cells);
-        }
-    }
-    kept_ = std::move(kept);
+    };
+    kept.rest = decodeSand(bytes, limits, {rowOf, done}, decoded);
+    Undo undo;
+    undo.kept_ = std::move(kept);
+    return undo;
 }
 
 void Undo::willChange(const HeightField& field, const CellRect& cells) {
@@ -50,10 +62,29 @@ void Undo::willChange(const HeightField& field, const CellRect& cells) {
     });
 }
 
-Snapshot Undo::copy(const HeightField& field) const {
-    Snapshot copy(field, kept_->inertia, kept_->outflow);
-    kept_->putInto(copy.field);
-    return copy;
+void Undo::encodeInto(const HeightField& field, base::ByteWriter& writer) const {
+    const CellRect bounds = field.bounds();
+    CellArray window(field.columns(), kTile);
+    int first = -1;        // row of the field that row 0 of the window has
+    bool differs = false;  // whether a tile in these rows does
+    const auto rowOf = [&](int y) -> const std::int32_t* {
+        if (const int wanted = y / kTile * kTile; wanted != first) {
+            first = wanted;
+            differs = false;
+            kept_->grid.forEach({0, first, bounds.x1, first + 1},
+                                [&](std::size_t tile) { differs = differs || kept_->tiles[tile] != nullptr; });
+            for (int row = first; differs && row < std::min(first + kTile, bounds.y1); ++row) {
+                std::copy(field.row(row), field.row(row) + bounds.x1, window.row(row - first));
+            }
+            kept_->grid.forEach({0, first, bounds.x1, first + 1}, [&](std::size_t tile) {
+                if (kept_->tiles[tile] != nullptr) {
+                    kept_->tiles[tile]->putInto(window, first, first + kTile, 0);
+                }
+            });
+        }
+        return differs ? window.row(y - first) : field.row(y);
+    };
+    encodeSand(bounds, rowOf, kept_->rest, writer, {});
 }
 
 std::int32_t Undo::height(const HeightField& field, int column, int row) const {

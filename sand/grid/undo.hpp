@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sand/grid/inertia.hpp"
@@ -26,8 +29,10 @@ public:
 
     /// Keeps the sand of `field`.
     void keep(const HeightField& field, Inertia inertia, std::int64_t outflow);
-    /// Keeps the sand of `copy`, which may differ from `field`.
-    void keep(const Snapshot& copy, const HeightField& field);
+    /// Returns an Undo that keeps the sand of `bytes`, which encodeInto() wrote. `field` is the current sand. Throws as
+    /// decodeSand() does. Takes memory for the tiles that differ from `field`, and for one row of tiles.
+    [[nodiscard]] static Undo decode(std::span<const std::uint8_t> bytes, const SandLimits& limits,
+                                     const HeightField& field, const std::function<void(std::size_t)>& decoded = {});
     /// Drops the kept sand.
     void forget() { kept_.reset(); }
     [[nodiscard]] bool any() const { return kept_.has_value(); }
@@ -41,8 +46,8 @@ public:
             kept_->tiles[tile] = pack();
         }
     }
-    /// Returns a copy of the kept sand. Requires any(). `field` is the current sand.
-    [[nodiscard]] Snapshot copy(const HeightField& field) const;
+    /// Writes the kept sand as Snapshot::encodeInto() does. Requires any(). `field` is the current sand.
+    void encodeInto(const HeightField& field, base::ByteWriter& writer) const;
     /// Returns the height of a cell in the kept sand [unit]. Requires any(). Unpacks a tile only if the last call has
     /// asked for another one.
     [[nodiscard]] std::int32_t height(const HeightField& field, int column, int row) const;
@@ -50,8 +55,8 @@ public:
     /// Requires any(). The tiles never change, so they may be shared.
     [[nodiscard]] const std::vector<std::shared_ptr<const PackedCells>>& tiles() const { return kept_->tiles; }
     /// Fluxes and outflow of the kept sand. Requires any().
-    [[nodiscard]] const Inertia& inertia() const { return kept_->inertia; }
-    [[nodiscard]] std::int64_t outflow() const { return kept_->outflow; }
+    [[nodiscard]] const Inertia& inertia() const { return kept_->rest.inertia; }
+    [[nodiscard]] std::int64_t outflow() const { return kept_->rest.outflow; }
     /// Returns the cells that putBackHeights() may change. Requires any().
     [[nodiscard]] std::vector<CellRect> changed() const;
     /// Writes the kept heights back into `field`. The kept sand is then that of the field. Requires any().
@@ -59,8 +64,7 @@ public:
 
 private:
     struct Kept {
-        Inertia inertia;
-        std::int64_t outflow;  // [unit · cell]
+        SandRest rest;
         TileGrid grid;
         std::vector<std::shared_ptr<const PackedCells>> tiles;
         /// The tile that height() has unpacked last, and its numbers. A ray reads many cells of a tile, one by one.

@@ -132,19 +132,16 @@ public:
 
     /// Keeps a snapshot of the current sand for an undo, in place of the one kept before.
     virtual void keep() = 0;
-    /// Keeps `copy` for an undo. `copy` must come from copy(), kept() or a SurfaceReader of this surface.
-    virtual void keep(const SurfaceCopy& copy) = 0;
     /// Drops the snapshot that is kept for an undo.
     virtual void forget() = 0;
-    /// Returns the snapshot that is kept for an undo, or null if hasKept() is false.
-    [[nodiscard]] virtual std::shared_ptr<const SurfaceCopy> kept() const = 0;
     [[nodiscard]] virtual bool hasKept() const = 0;
     /// Restores the kept snapshot, which stays kept. Requires hasKept().
     virtual void putBackKept() = 0;
 
     /// Returns a snapshot of the current sand.
     [[nodiscard]] virtual std::shared_ptr<const SurfaceCopy> copy() const = 0;
-    /// Snapshots of one moment, of the current and of the kept sand. `kept` is null if hasKept() is false.
+    /// Snapshots of one moment, of the current sand and of the sand that is kept for an undo. `kept` is null if
+    /// hasKept() is false.
     struct Copies {
         std::shared_ptr<const SurfaceCopy> sand, kept;
     };
@@ -153,17 +150,27 @@ public:
     ///
     /// Until complete(), the snapshots belong to the thread of the surface. Then they never change again, and any
     /// thread may read them.
-    [[nodiscard]] virtual Copies beginCopy() const { return {copy(), kept()}; }
+    [[nodiscard]] virtual Copies beginCopy() const = 0;
     /// Copies at least `cells` further cells, or all that are left, into the oldest begun snapshot that is not
     /// complete. Returns false if there is none.
     virtual bool continueCopy(std::int64_t /* cells */) const { return false; }
     /// Returns the function that decodes snapshots for this surface.
-    [[nodiscard]] SurfaceReader reader() const { return readerThatCalls({}); }
-    /// Returns a reader that calls `decoded` again and again, unless it is empty, with the number of bytes that it has
-    /// decoded since the last call. A TIN's never calls it, because a TIN is small.
-    [[nodiscard]] virtual SurfaceReader readerThatCalls(std::function<void(std::size_t)> decoded) const = 0;
-    /// Replaces the sand by `copy`, which must come from copy(), kept() or a SurfaceReader of this surface.
+    [[nodiscard]] virtual SurfaceReader reader() const = 0;
+    /// Replaces the sand by `copy`, which must come from copy() or a SurfaceReader of this surface.
     virtual void replace(const SurfaceCopy& copy) = 0;
+    /// Writes what copy() and the kept snapshot would, without copying the sand. encodeKept() requires hasKept().
+    virtual void encodeInto(base::ByteWriter& writer) const = 0;
+    virtual void encodeKept(base::ByteWriter& writer) const = 0;
+    /// Decodes what encodeInto() and encodeKept() wrote; `kept` is empty if no sand was kept. Throws base::FormatError
+    /// if the bytes are not sand for this surface. Returns a function that replaces the sand and the kept sand by the
+    /// decoded ones. It throws at most std::bad_alloc. Call it at most once, before the surface changes otherwise; only
+    /// changeRules() and forget() may be called before.
+    ///
+    /// Calls `decoded` again and again, unless it is empty, with the number of bytes that it has decoded since the last
+    /// call. A TIN never calls it, because a TIN is small.
+    [[nodiscard]] virtual std::function<void()> decode(std::span<const std::uint8_t> sand,
+                                                       std::span<const std::uint8_t> kept,
+                                                       const std::function<void(std::size_t)>& decoded) = 0;
 
     /// Returns the volume that left the field over an open rim [unit · cell; for a TIN: unit · probe unit² / 6].
     [[nodiscard]] virtual std::int64_t outflow() const = 0;

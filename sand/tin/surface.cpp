@@ -236,15 +236,23 @@ SandLimits TinSurface::limits() const {
 
 void TinSurface::reset() { replace(Snapshot(layerOf(*start_), {})); }
 
-void TinSurface::keep(const SurfaceCopy& copy) {
-    beforeStroke_.keep(std::make_shared<const Snapshot>(dynamic_cast<const Snapshot&>(copy)));
-}
-
 std::shared_ptr<const SurfaceCopy> TinSurface::copy() const { return std::make_shared<const Snapshot>(layer_, state_); }
 
-SurfaceReader TinSurface::readerThatCalls(std::function<void(std::size_t)> /* decoded */) const {
+SurfaceReader TinSurface::reader() const {
     return [limits = limits()](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
         return std::make_shared<const Snapshot>(bytes, limits);
+    };
+}
+
+std::function<void()> TinSurface::decode(std::span<const std::uint8_t> sand, std::span<const std::uint8_t> kept,
+                                         const std::function<void(std::size_t)>& /* decoded */) {
+    const auto next = std::make_shared<const Snapshot>(sand, limits());
+    const auto stroke = kept.empty() ? nullptr : std::make_shared<const Snapshot>(kept, limits());
+    return [this, next, stroke] {
+        replace(*next);
+        if (stroke != nullptr) {
+            beforeStroke_.keep(stroke);
+        }
     };
 }
 

@@ -46,15 +46,18 @@ public:
     void reset() override;
 
     void keep() override { beforeStroke_.keep(layer_, state_); }
-    void keep(const SurfaceCopy& copy) override;
     void forget() override { beforeStroke_.forget(); }
-    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return beforeStroke_.copy(); }
     [[nodiscard]] bool hasKept() const override { return beforeStroke_.any(); }
     void putBackKept() override { replace(*beforeStroke_.copy()); }
 
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
-    [[nodiscard]] SurfaceReader readerThatCalls(std::function<void(std::size_t)> decoded) const override;
+    [[nodiscard]] Copies beginCopy() const override { return {copy(), beforeStroke_.copy()}; }
+    [[nodiscard]] SurfaceReader reader() const override;
     void replace(const SurfaceCopy& copy) override;
+    void encodeInto(base::ByteWriter& writer) const override { copy()->encodeInto(writer, {}); }
+    void encodeKept(base::ByteWriter& writer) const override { beforeStroke_.copy()->encodeInto(writer, {}); }
+    [[nodiscard]] std::function<void()> decode(std::span<const std::uint8_t> sand, std::span<const std::uint8_t> kept,
+                                               const std::function<void(std::size_t)>& decoded) override;
 
     [[nodiscard]] std::shared_ptr<SurfaceRecord> record() override { return records_.record(layer_, state_); }
     void follow(SurfaceRecords records) override { records_.follow(layer_, std::move(records)); }

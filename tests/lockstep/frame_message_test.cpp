@@ -111,14 +111,16 @@ TEST(SessionMessage, SurvivesItsEncoding) {
          {.kind = Fault::Kind::die, .rank = 2, .signal = 11},
          {.kind = Fault::Kind::partition, .rank = Fault::kLink, .frame = 3, .milliseconds = 1}},
         true,
-        {6, 7, 8}};
+        "dunes",
+        true};
     const lockstep::SessionMessage copy = base::decoded<lockstep::SessionMessage>(base::encoded(message));
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
     EXPECT_EQ(copy.frameTimeout, 12.5);
     EXPECT_EQ(copy.faults, message.faults);
     EXPECT_TRUE(copy.pointer);
-    EXPECT_EQ(copy.state, message.state);
+    EXPECT_EQ(copy.sceneName, "dunes");
+    EXPECT_TRUE(copy.resumes);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "master/journal/journal.hpp"
 #include "master/measure/recovery.hpp"
 #include "tests/support/files/folder_test.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/machine/small_disk.hpp"
 #include "tests/support/sand/no_steps.hpp"
 #include "tests/support/sand/sand_samples.hpp"
@@ -127,7 +128,7 @@ TEST_F(Record, RemovesTheResultsOfAnEarlierSessionUnlessItGoesOn) {
     leave();
     master::RecordOptions options;
     options.resumed =
-        std::make_shared<const master::ResumedSession>(*master::readSession(folder_ / "session.journal", ""));
+        std::make_shared<const master::ResumedSession>(*test::readSession(folder_ / "session.journal", ""));
     master::SessionRecord record = open(options);
     EXPECT_FALSE(has("summary.json"));
     EXPECT_FALSE(has("failure.json"));

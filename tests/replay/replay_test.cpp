@@ -15,6 +15,7 @@
 #include "scene/import/esri_file.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/replay/replay_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/sand/sand_of.hpp"
 #include "tests/support/sand/sand_samples.hpp"
 
@@ -189,7 +190,7 @@ TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
 TEST_F(Replay, ARecoveredJournalNamesNoHostThatAnEarlierBuildHasWritten) {
     record();
     {
-        const auto session = master::readSession(journal(), "");
+        const auto session = test::readSession(journal());
         master::JournalWriter writer(session->place, "test");
         writer.resume({session->frame, {session->step, session->hash}, 0, "rank 1 on node02 was killed by SIGKILL"});
         writer.finish(session->step, session->hash);

@@ -12,6 +12,7 @@
 #include "master/journal/journal.hpp"
 #include "master/journal/keeper.hpp"
 #include "tests/support/files/folder_test.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/sand/sand_samples.hpp"
 
 namespace {
@@ -154,7 +155,7 @@ TEST_F(Check, AResumedSessionTakesTheSandOfTheJournalAndNamesTheMajority) {
     keeper_->doubt({frame_, shown()});
     showFrames(15);
     keeper_.reset();
-    const auto resumed = master::readSession(journal(), "");
+    const auto resumed = test::readSession(journal());
     ASSERT_TRUE(resumed.has_value());
     EXPECT_EQ(resumed->step, 35U);
     EXPECT_EQ(resumed->hash, replica_.stateHash());
@@ -169,7 +170,7 @@ TEST_F(Check, AResumedSessionTakesTheSandOfTheJournalAndNamesTheMajority) {
     showFrames(3);
     keeper_->finish(shown());
     keeper_.reset();
-    EXPECT_FALSE(master::readSession(journal(), "")->outvoted.has_value());
+    EXPECT_FALSE(test::readSession(journal())->outvoted.has_value());
 }
 
 TEST_F(Check, NoCheckpointHoldsTheSandOfAMajorityInDoubt) {

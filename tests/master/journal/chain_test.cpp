@@ -10,6 +10,7 @@
 #include "master/journal/file_parts.hpp"
 #include "master/journal/journal.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 
 namespace {
 
@@ -70,7 +71,7 @@ TEST_F(Chain, APartOfAnotherPastOfTheSameSessionIsRefused) {
         replica_.decodeState(state);
         frame_ = frame;
         random_.seed(seed);
-        const auto resumed = master::readSession(journal(), "");
+        const auto resumed = test::readSession(journal());
         begin({.checkpointSeconds = 0, .partBytes = kPart}, &*resumed);
         goOnUntil(2);
         keeper_.reset();

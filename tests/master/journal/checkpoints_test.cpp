@@ -14,6 +14,7 @@
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 
 namespace {
 
@@ -161,7 +162,7 @@ TEST_F(Checkpoints, OneOfTheStepAtWhichTheSessionResumesStays) {
     ASSERT_EQ(two[1], replica_.stepNumber()) << "it is of the last step";
     end();
     for (const char* resume : {"the first", "the second"}) {
-        const auto resumed = master::readSession(journal(), "");
+        const auto resumed = test::readSession(journal());
         ASSERT_TRUE(resumed.has_value());
         EXPECT_EQ(resumed->checkpointStep, two[1]) << resume;
         EXPECT_EQ(resumed->replayedSteps, 0U) << resume;
@@ -176,7 +177,7 @@ TEST_F(Checkpoints, OnlyThoseOfLaterStepsThanTheResumeAreSetAside) {
     begin({.checkpointSeconds = kAlways});
     const Steps three = begun(3);
     end();
-    std::optional<master::ResumedSession> resumed = master::readSession(journal(), "");
+    std::optional<test::ReadSession> resumed = test::readSession(journal());
     ASSERT_TRUE(resumed.has_value());
     resumed->step = three[1];
     begin({.checkpointSeconds = 0}, &*resumed);
@@ -216,7 +217,7 @@ TEST_F(Checkpoints, OneIsDueAtOnceAfterADoubtAndAfterAResume) {
     ASSERT_TRUE(showFrame());
     EXPECT_EQ(keeper_->copyMs().size(), 1U) << "the next one is not due";
     keeper_.reset();
-    const auto resumed = master::readSession(journal(), "");
+    const auto resumed = test::readSession(journal());
     begin({.checkpointSeconds = 1000}, &*resumed);
     ASSERT_TRUE(showFrame());
     EXPECT_EQ(keeper_->copyMs().size(), 1U) << "after a resume";
@@ -234,7 +235,7 @@ TEST_F(Checkpoints, OneOfTheStepsThatAMajorityDecidedIsNotUsed) {
     showUntil(75);
     keeper_.reset();
     keepCheckpoint(wrong);
-    const auto resumed = master::readSession(journal(), "");
+    const auto resumed = test::readSession(journal());
     ASSERT_TRUE(resumed.has_value());
     EXPECT_EQ(resumed->step, 75U);
     EXPECT_EQ(resumed->checkpointStep, 0U);
@@ -255,7 +256,7 @@ TEST_F(Checkpoints, NoneOfTheSixtyStepsBeforeADoubtIsUsedUntilTheDoubtHasEnded) 
     ASSERT_TRUE(showFrame());
     keeper_->doubt({frame_, here()});  // a second decision does not end the first one's doubt
     ASSERT_TRUE(showFrame());
-    const auto used = [this] { return master::readSession(journal(), "")->checkpointStep; };
+    const auto used = [this] { return test::readSession(journal())->checkpointStep; };
     EXPECT_EQ(used(), 4U) << "64 - 60";
     keeper_->checked({frame_, here(), false});
     ASSERT_TRUE(showFrame());
@@ -264,7 +265,7 @@ TEST_F(Checkpoints, NoneOfTheSixtyStepsBeforeADoubtIsUsedUntilTheDoubtHasEnded) 
     ASSERT_TRUE(showFrame());
     EXPECT_EQ(used(), 5U) << "67 - 60 = 7";
     keeper_.reset();
-    const auto resumed = master::readSession(journal(), "");
+    const auto resumed = test::readSession(journal());
     begin({.checkpointSeconds = 0}, &*resumed);
     EXPECT_EQ(used(), 40U) << "the resumed session has the sand of the journal";
 }

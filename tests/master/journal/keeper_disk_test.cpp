@@ -12,6 +12,7 @@
 #include "base/input_error.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/machine/small_disk.hpp"
 
 namespace {
@@ -87,7 +88,7 @@ TEST_F(KeeperDisk, AFullDiskStopsTheSandUntilThereIsRoom) {
         EXPECT_EQ(replica_.stepNumber(), stood + 1);
         expectWhole(replica_.stepNumber());
         keeper_.reset();
-        EXPECT_EQ(master::readSession(journal(), "")->forceShare, 0.25);
+        EXPECT_EQ(test::readSession(journal())->forceShare, 0.25);
     });
 }
 

@@ -18,6 +18,7 @@
 #include "master/journal/file_parts.hpp"
 #include "master/journal/journal.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/processes/blocked_child.hpp"
 #include "tests/support/seed.hpp"
 
@@ -113,7 +114,7 @@ TEST_F(Keeper, IsWholeOnlyWithAnEndAndEveryStep) {
     // A checkpoint after the end of the journal: the journal has lost its step.
     std::ofstream(master::checkpointFile(journal(), 7)) << "later";
     for (const char* resume : {"the first", "the second"}) {
-        const master::ResumedSession resumed = master::readSession(journal(), "").value();
+        const master::ResumedSession resumed = test::readSession(journal()).value();
         keeper_.emplace(folder_, master::JournalOptions{}, scene_, &resumed, "a test", "test");
         end();
         EXPECT_FALSE(keeper_->whole()) << resume;
@@ -125,7 +126,7 @@ TEST_F(Keeper, TheShareOfTheForceIsOnDiskBeforeAnyFurtherStep) {
     begin({});
     ASSERT_TRUE(showFrame());
     keeper_->force({0});
-    EXPECT_EQ(master::readSession(journal(), "")->forceShare, 0) << "as a kill at this moment would leave it";
+    EXPECT_EQ(test::readSession(journal())->forceShare, 0) << "as a kill at this moment would leave it";
 }
 
 // A wall that rests has no further step for hours.
@@ -168,8 +169,7 @@ TEST_F(Keeper, NoPipeInTheFolderStopsASessionOrItsResume) {
     std::filesystem::remove(journal());
     support::makePipe(journal());
     EXPECT_TRUE(support::endsByItself([this] { EXPECT_THROW(begin({}), base::InputError); })) << "a journal";
-    EXPECT_TRUE(
-        support::endsByItself([this] { EXPECT_THROW((void)master::readSession(journal(), ""), base::InputError); }));
+    EXPECT_TRUE(support::endsByItself([this] { EXPECT_THROW((void)test::readSession(journal()), base::InputError); }));
 }
 
 // The journal has lost the step of the newest checkpoint, as after a crash.
@@ -181,7 +181,7 @@ TEST_F(Keeper, RemovesCheckpointsOfStepsThatItsJournalDoesNotHold) {
     }
     keeper_.reset();
     const auto newest = master::checkpointsOf(journal()).front();
-    std::optional<master::ResumedSession> resumed = master::readSession(journal(), "");
+    std::optional<test::ReadSession> resumed = test::readSession(journal());
     ASSERT_TRUE(resumed.has_value());
     resumed->step = newest - 1;
     begin({.checkpointSeconds = 0}, &*resumed);
@@ -203,7 +203,7 @@ TEST_F(Keeper, GoesOnInAnotherPartAndIsReadAsOne) {
     expectWhole(100);
     // A resumed session continues the last part.
     keeper_.reset();
-    const auto resumed = master::readSession(journal(), "");
+    const auto resumed = test::readSession(journal());
     ASSERT_TRUE(resumed.has_value());
     EXPECT_EQ(resumed->place.part, parts);
     begin({.checkpointSeconds = 0, .partBytes = 2000}, &*resumed);
@@ -276,7 +276,7 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
     ASSERT_GT(reader.rest().size(), 0U) << "the step is cut off";
     std::filesystem::resize_file(master::partOf(journal(), 2), bytes.size() - reader.rest().size());
     EXPECT_EQ(master::readJournal(journal()).frames.size(), steps);
-    const auto resumed = master::readSession(journal(), "");
+    const auto resumed = test::readSession(journal());
     ASSERT_TRUE(resumed.has_value());
     EXPECT_EQ(resumed->place.part, 1U);
     replica_.decodeState(resumed->sand->encodeState());
@@ -328,7 +328,7 @@ TEST_F(Keeper, KilledInTheMiddleOfWritesNothingThatWasOnDiskIsLost) {
             steps = heard;
         }
         close(told[0]);
-        const auto resumed = master::readSession(journal(), "");
+        const auto resumed = test::readSession(journal());
         ASSERT_TRUE(resumed.has_value()) << "seed " << seed << ", kill " << kill;
         ASSERT_GE(resumed->step, steps) << "seed " << seed << ", kill " << kill;
         ASSERT_LE(resumed->step, steps + 1) << "seed " << seed << ", kill " << kill;

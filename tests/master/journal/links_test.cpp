@@ -15,6 +15,7 @@
 #include "master/journal/resume.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/processes/blocked_child.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -54,11 +55,11 @@ TEST_F(Links, InPlaceOfAJournalIsFollowedByNobodyWhoNamesTheFolder) {
     becomesLink(journal());
     const std::string line = journal().string() + kLink + "; name the journal itself";
     EXPECT_EQ(refusal(), line);
-    EXPECT_EQ(test::refusalOf([this] { (void)master::readSession(journal(), ""); }), line);
+    EXPECT_EQ(test::refusalOf([this] { (void)test::readSession(journal()); }), line);
     EXPECT_EQ(test::refusalOf([this] { (void)master::restoreSand(journal(), 1); }), line);
     EXPECT_EQ(test::refusalOf([this] { (void)master::readJournal(master::journalAt(folder_)); }), line);
     fs::remove(aside_ / journal().filename());
-    EXPECT_EQ(test::refusalOf([this] { (void)master::readSession(journal(), ""); }), line) << "a link to nothing";
+    EXPECT_EQ(test::refusalOf([this] { (void)test::readSession(journal()); }), line) << "a link to nothing";
 }
 
 TEST_F(Links, ToAJournalMayBeNamedByAUser) {

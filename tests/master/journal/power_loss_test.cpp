@@ -15,6 +15,7 @@
 #include "master/journal/journal.hpp"
 #include "master/journal/keeper.hpp"
 #include "tests/support/files/folder_test.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/sand/sand_samples.hpp"
 
 namespace {
@@ -53,7 +54,7 @@ protected:
     }
     /// Resumes the session, and expects every step up to `shown` and the right sand. Then shows another frame.
     void expectResumed(std::uint64_t shown) {
-        const auto resumed = master::readSession(journal(), "");
+        const auto resumed = test::readSession(journal());
         ASSERT_TRUE(resumed.has_value());
         ASSERT_GE(resumed->step, shown) << "steps that were shown are lost";
         ASSERT_LE(resumed->step, shown + 1);

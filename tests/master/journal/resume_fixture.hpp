@@ -15,6 +15,7 @@
 #include "master/journal/journal.hpp"
 #include "master/journal/resume.hpp"
 #include "tests/support/files/folder_test.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/sand/sand_samples.hpp"
 
 namespace test {
@@ -67,7 +68,7 @@ protected:
     }
     static std::string refusal(const std::filesystem::path& journal, const std::string& scene = "") {
         try {
-            const auto session = master::readSession(journal, scene);
+            const auto session = test::readSession(journal, scene);
             session->check->require(session->scene);
         } catch (const base::InputError& error) {
             return error.what();

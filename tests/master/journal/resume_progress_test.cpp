@@ -13,6 +13,7 @@
 #include "master/journal/resume.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/master/journal/resume_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace {
@@ -22,10 +23,9 @@ using test::Resume;
 TEST_F(Resume, TellsHowMuchOfTheJournalIsReadAndReplayed) {
     std::filesystem::remove_all(folder_ / "checkpoints");
     std::vector<double> read, replayed;
-    const auto session =
-        master::readSession(journal(), "",
-                            {.progress = {.read = [&](double share) { read.push_back(share); },
-                                          .replayed = [&](double share) { replayed.push_back(share); }}});
+    const auto session = test::readSession(journal(), "",
+                                           {.read = [&](double share) { read.push_back(share); },
+                                            .replayed = [&](double share) { replayed.push_back(share); }});
     EXPECT_EQ(session->replayedSteps, 40U);
     EXPECT_EQ(read.size(), 20U + 1) << "of each record, and at the end";
     EXPECT_GE(replayed.size(), 40U) << "of each step";
@@ -46,12 +46,11 @@ TEST_F(Resume, TellsThatTheReplayBeginsAgainFromAnEarlierCheckpoint) {
     ASSERT_NE(replica_.stateHash(), hashes_[40]);
     keepCheckpoint(session);
     {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         writer.finish(40, hashes_[40]);
     }
     std::vector<double> shares;
-    const auto resumed =
-        master::readSession(journal(), "", {.progress = {.replayed = [&](double share) { shares.push_back(share); }}});
+    const auto resumed = test::readSession(journal(), "", {.replayed = [&](double share) { shares.push_back(share); }});
     EXPECT_EQ(resumed->hash, hashes_[40]);
     EXPECT_EQ(resumed->checkpointStep, 30U);
     int begun = 1;
@@ -62,13 +61,28 @@ TEST_F(Resume, TellsThatTheReplayBeginsAgainFromAnEarlierCheckpoint) {
     EXPECT_EQ(shares.back(), 1);
 }
 
+// The state comes from the file of the checkpoint, or from the replica after later steps.
+TEST_F(Resume, SendsTheSandAfterTheLastStepToTheRanks) {
+    for (const bool replays : {false, true}) {
+        if (replays) {
+            std::filesystem::remove(master::checkpointFile(journal(), 40));
+        }
+        const auto session = test::readSession(journal(), "");
+        EXPECT_EQ(session->replayedSteps, replays ? 10U : 0U);
+        sand::Replica rank(session->scene);
+        rank.decodeState(session->state);
+        EXPECT_EQ(rank.stateHash(), hashes_[40]);
+        EXPECT_EQ(rank.encodeState(), session->sand->encodeState());
+    }
+}
+
 TEST_F(Resume, ComparesTheNamedSceneWithTheJournalsAndTellsTheProgress) {
     const std::filesystem::path file = folder_ / "scene.toml", other = folder_ / "other" / "session.journal";
     std::ofstream(file) << "name = \"other\"\n[field]\ncolumns = 40\nrows = 30\n[terrain]\n[material]\n";
     std::filesystem::create_directories(other.parent_path());
     { master::JournalWriter writer(other, scene::loadScene(file), "test"); }
-    // readSession() asks for nothing, or for everything if the file has been read by then.
-    const auto session = master::readSession(other, file);
+    // resumeSession() asks for nothing, or for everything if the file has been read by then.
+    const auto session = test::readSession(other, file);
     session->check->require(session->scene);
     session->check->requireIfRead(session->scene);
     for (const std::string& named : {file.string(), std::string()}) {
@@ -91,8 +105,7 @@ TEST_F(Resume, ChecksTheMemoryBeforeTheSceneIsDecoded) {
         checked = reader.place().journal;
         throw base::InputError("too large");
     };
-    EXPECT_EQ(test::refusalOf([&] { (void)master::readSession(journal(), "missing.toml", {.check = check}); }),
-              "too large");
+    EXPECT_EQ(test::refusalOf([&] { (void)master::openSession(journal(), "missing.toml", check); }), "too large");
     EXPECT_EQ(checked, journal().string());
 }
 

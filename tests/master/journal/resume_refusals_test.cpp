@@ -11,6 +11,7 @@
 #include "master/journal/resume.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/master/journal/resume_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 
 namespace {
 
@@ -18,7 +19,7 @@ using test::Resume;
 
 TEST_F(Resume, RefusesAJournalWithAHoleInItsSteps) {
     {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         writer.append({21, hashes_[40], {samples::randomStep(42, scene_.rules, random_)}});
     }
     EXPECT_NE(refusal(journal()).find("step 42 follows step 40"), std::string::npos) << refusal(journal());
@@ -55,12 +56,12 @@ TEST_F(Resume, TheFilesOfATerrainHaveTheirUnitsAgain) {
     std::filesystem::create_directories(old.parent_path());
     { master::JournalWriter writer(ours, scene, "test"); }
     scene.statements->front().file = "t.asc";  // a journal names no folder
-    EXPECT_EQ(master::readSession(ours, "")->scene.statements, scene.statements);
+    EXPECT_EQ(test::readSession(ours)->scene.statements, scene.statements);
     EXPECT_EQ(master::readJournal(ours).scene.statements, scene.statements);
     EXPECT_EQ(refusal(ours, (folder_ / "." / "scene.toml").string()), "not refused");
     scene.statements.reset();
     { master::JournalWriter writer(old, scene, "test"); }
-    EXPECT_EQ(master::readSession(old, "")->scene.statements, std::nullopt);
+    EXPECT_EQ(test::readSession(old)->scene.statements, std::nullopt);
     EXPECT_EQ(refusal(old, file.string()), "not refused");
 }
 
@@ -80,7 +81,7 @@ TEST_F(Resume, RefusesASceneOfAnotherSizeBeforeItsHeightsAreMade) {
 
 // Two sessions that write one journal would each destroy the steps of the other.
 TEST_F(Resume, RefusesASessionThatStillRuns) {
-    const auto session = master::readSession(journal(), "");
+    const auto session = test::readSession(journal());
     const master::JournalWriter running(session->place, "test");
     const auto size = std::filesystem::file_size(journal());
     try {
@@ -94,7 +95,7 @@ TEST_F(Resume, RefusesASessionThatStillRuns) {
 
 // A session that ends while the next one starts may have written more steps than the next one has read.
 TEST_F(Resume, CutsNothingThatWasWrittenSinceItWasRead) {
-    const auto session = master::readSession(journal(), "");
+    const auto session = test::readSession(journal());
     {
         master::JournalWriter running(session->place, "test");
         running.finish(session->step, session->hash);

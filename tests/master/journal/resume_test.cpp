@@ -11,6 +11,7 @@
 #include "master/journal/journal.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/master/journal/resume_fixture.hpp"
+#include "tests/support/journal/read_session.hpp"
 
 namespace {
 
@@ -51,7 +52,7 @@ TEST_F(Resume, LeavesOutACheckpointOfOtherSand) {
     ASSERT_NE(replica_.stateHash(), hashes_[40]);
     keepCheckpoint(session);
     std::filesystem::remove(master::checkpointFile(journal(), 30));
-    master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+    master::JournalWriter writer(test::readSession(journal())->place, "test");
     writer.finish(40, hashes_[40]);
     expectSand(40, 20);
 }
@@ -70,7 +71,7 @@ TEST_F(Resume, LeavesOutACheckpointOfAnotherSession) {
 TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
     // Cuts off a part of the last frame.
     std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);
-    const auto session = master::readSession(journal(), "");
+    const auto session = test::readSession(journal());
     ASSERT_TRUE(session.has_value());
     EXPECT_EQ(session->step, 38U);
     EXPECT_EQ(session->hash, hashes_[38]);
@@ -109,10 +110,10 @@ TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
 
 TEST_F(Resume, AnEndedSessionGoesOnAndItsEndCountsNoMore) {
     {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         writer.finish(40, hashes_[40]);
     }
-    const auto session = master::readSession(journal(), "");
+    const auto session = test::readSession(journal());
     ASSERT_TRUE(session.has_value());
     EXPECT_EQ(session->step, 40U);
     {
@@ -129,11 +130,11 @@ TEST_F(Resume, KnowsWhatTheOperatorMadeOfTheMaterial) {
     wetter.toolKind = sand::ToolKind::ellipse;
     wetter.toolWidth = 0.5;
     {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         writer.keep(wetter);
         record(writer, 1);
     }
-    EXPECT_EQ(master::readSession(journal(), "")->material, wetter);
+    EXPECT_EQ(test::readSession(journal())->material, wetter);
     const journal::Journal whole = master::readJournal(journal());
     EXPECT_EQ(whole.scene.material, scene_.material);
     ASSERT_EQ(whole.materials.size(), 1U);
@@ -142,15 +143,15 @@ TEST_F(Resume, KnowsWhatTheOperatorMadeOfTheMaterial) {
 }
 
 TEST_F(Resume, KnowsTheShareOfTheForceThatAnOperatorHasSetLast) {
-    EXPECT_FALSE(master::readSession(journal(), "")->forceShare.has_value());
-    const std::uint64_t before = master::readSession(journal(), "")->hash;
+    EXPECT_FALSE(test::readSession(journal())->forceShare.has_value());
+    const std::uint64_t before = test::readSession(journal())->hash;
     {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         writer.keep(journal::JournalForce{0.5});
         writer.keep(journal::JournalForce{0});
         writer.sync();
     }
-    const auto session = master::readSession(journal(), "");
+    const auto session = test::readSession(journal());
     EXPECT_EQ(session->forceShare, 0);
     EXPECT_EQ(session->hash, before) << "sand and hash do not know it";
     EXPECT_EQ(session->step, 40U);
@@ -159,7 +160,7 @@ TEST_F(Resume, KnowsTheShareOfTheForceThatAnOperatorHasSetLast) {
 TEST_F(Resume, ChecksTheHashesOnTheWay) {
     std::filesystem::remove_all(folder_ / "checkpoints");
     {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         writer.append({21, hashes_[40] ^ 1, {samples::randomStep(41, scene_.rules, random_)}});
     }
     EXPECT_NE(refusal(journal()).find(fmt::format("after step 40 the session had {:016x}, the replay has {:016x}",
@@ -171,11 +172,11 @@ TEST_F(Resume, ChecksTheHashesOnTheWay) {
 // A session was killed while nothing moved. Its last record is a frame without steps.
 TEST_F(Resume, ContinuesSandThatRestsAndChecksItsHash) {
     const auto rest = [this](std::uint64_t hash) {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         writer.append({++frame_, hash, {}});
     };
     rest(hashes_[40]);
-    const auto session = master::readSession(journal(), "");
+    const auto session = test::readSession(journal());
     EXPECT_EQ(session->step, 40U);
     EXPECT_EQ(session->frame, 21U) << "frames continue after the one in which the rest began";
     EXPECT_EQ(session->hash, hashes_[40]);
@@ -194,7 +195,7 @@ TEST_F(Resume, ContinuesSandThatRestsAndChecksItsHash) {
 // The first new edit gets a higher number than all edits that are in a step. The torn step was never shown.
 TEST_F(Resume, KnowsTheHighestNumberOfAnEditInAllEpochs) {
     const auto append = [this](std::uint64_t number, std::uint32_t epoch) {
-        const auto session = master::readSession(journal(), "");
+        const auto session = test::readSession(journal());
         master::JournalWriter writer(session->place, "test");
         journal::JournalFrame frame{++frame_, replica_.stateHash(), {}};
         frame.steps.push_back(samples::randomStep(replica_.stepNumber() + 1, scene_.rules, random_));
@@ -204,35 +205,35 @@ TEST_F(Resume, KnowsTheHighestNumberOfAnEditInAllEpochs) {
         writer.append(frame);
         writer.sync();
     };
-    EXPECT_EQ(master::readSession(journal(), "")->lastEdit, 0U) << "these edits came from no operator";
+    EXPECT_EQ(test::readSession(journal())->lastEdit, 0U) << "these edits came from no operator";
     append(7, 2);
     append(300, 3);
-    EXPECT_EQ(master::readSession(journal(), "")->lastEdit, 300U);
+    EXPECT_EQ(test::readSession(journal())->lastEdit, 300U);
     append(301, 3);
     std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);
-    EXPECT_EQ(master::readSession(journal(), "")->lastEdit, 300U);
+    EXPECT_EQ(test::readSession(journal())->lastEdit, 300U);
 }
 
 // The operator's material is written before the step with its edit.
 TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOff) {
-    const scene::Material before = master::readSession(journal(), "")->material;
+    const scene::Material before = test::readSession(journal())->material;
     {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         scene::Material wetter = before;
         wetter.humidity = before.humidity == 0.5 ? 0.25 : 0.5;
         (void)writer.keep(wetter);
         writer.sync();
     }
-    EXPECT_EQ(master::readSession(journal(), "")->material.humidity, before.humidity);
+    EXPECT_EQ(test::readSession(journal())->material.humidity, before.humidity);
     EXPECT_TRUE(master::readJournal(journal()).materials.empty());
 }
 
 // The resumed session may take a frame without a material as its first. A material that the crash left without its step
 // is not a material of this frame.
 TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOffAlsoAfterASecondResume) {
-    const scene::Material before = master::readSession(journal(), "")->material;
+    const scene::Material before = test::readSession(journal())->material;
     {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        master::JournalWriter writer(test::readSession(journal())->place, "test");
         scene::Material wetter = before;
         wetter.humidity = 0.5;
         ASSERT_NE(wetter, before);
@@ -240,7 +241,7 @@ TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOffAlsoAfterASecondResume) {
         record(writer, 1);
     }
     std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);  // tears off the frame alone
-    const auto torn = master::readSession(journal(), "");
+    const auto torn = test::readSession(journal());
     ASSERT_EQ(torn->step, 40U);
     ASSERT_GT(torn->cutBytes, 0);
     replica_.decodeState(torn->sand->encodeState());
@@ -249,14 +250,14 @@ TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOffAlsoAfterASecondResume) {
         writer.resume({torn->frame, {torn->step, torn->hash}, torn->cutBytes, "a crash"});
         record(writer, 1);
     }
-    const auto again = master::readSession(journal(), "");
+    const auto again = test::readSession(journal());
     EXPECT_EQ(again->step, 42U);
     EXPECT_EQ(again->material, before);
     EXPECT_TRUE(master::readJournal(journal()).materials.empty());
 }
 
 TEST_F(Resume, WithoutAJournalThereIsNothingToGoOnWith) {
-    EXPECT_FALSE(master::readSession(folder_ / "nowhere" / "session.journal", "").has_value());
+    EXPECT_FALSE(test::readSession(folder_ / "nowhere" / "session.journal", "").has_value());
 }
 
 }  // namespace

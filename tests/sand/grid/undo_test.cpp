@@ -75,7 +75,9 @@ TEST(GridUndo, KeepsEveryCellOfARectangleThatHasChanged) {
     forEachRect([&](const CellRect& cells) {
         undo.willChange(field, cells);
         raise(field, cells);
-        ASSERT_TRUE(sameHeights(undo.copy(field).field, before))
+        base::ByteWriter writer;
+        undo.encodeInto(field, writer);
+        ASSERT_TRUE(sameHeights(sand::grid::Snapshot::decode(writer.bytes(), {{kColumns, kRows}}).field, before))
             << cells.x0 << ", " << cells.y0 << " to " << cells.x1 << ", " << cells.y1;
     });
     for (int row = 0; row < kRows; ++row) {
@@ -119,8 +121,7 @@ TEST(GridUndo, TakesOverSandThatDiffersFromTheField) {
     forEachRect([&](const CellRect& cells) {
         HeightField other = field;
         raise(other, cells);
-        sand::grid::Undo undo;
-        undo.keep(sand::grid::Snapshot(other, {}, 7), field);
+        auto undo = sand::grid::Undo::decode(sand::grid::Snapshot(other, {}, 7).encode(), {{kColumns, kRows}}, field);
         HeightField now = field;
         undo.putBackHeights(now);
         ASSERT_TRUE(sameHeights(now, other));

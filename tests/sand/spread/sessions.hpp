@@ -100,7 +100,11 @@ inline sand::Step randomStep(const sand::Rules& rules, const sand::Replica& save
 
 /// Returns the sand of a replica and the sand that it keeps for an undo: heights, fluxes, age and outflow.
 inline std::array<base::Bytes, 2> sandOf(const sand::Replica& replica) {
-    return {replica.copySand()->encode(), replica.canUndo() ? replica.surface().kept()->encode() : base::Bytes()};
+    base::ByteWriter kept;
+    if (replica.canUndo()) {
+        replica.surface().encodeKept(kept);
+    }
+    return {replica.copySand()->encode(), kept.take()};
 }
 
 /// Plays `steps` random steps of a hand over a random field, as wholes and in parts of 1, 7, 16 and 64 sweeps. Returns

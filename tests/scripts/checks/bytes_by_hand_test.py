@@ -31,7 +31,6 @@ BY_HAND = {
     "journal/format.cpp": "length, type, mark and checksum around a record",
     "master/journal/checkpoint.cpp": "the state of a checkpoint, which is compressed into its file",
     "sand/grid/snapshot.cpp": "the outflow before compressed cells",
-    "sand/grid/tile_copy.cpp": "the same bytes as snapshot.cpp, from packed tiles",
     "sand/model/grid_codec.cpp": "compressed cells",
     "sand/model/movement.cpp": "runs of equal numbers",
     "sand/model/step.cpp": "differences between points of a path",
