@@ -84,7 +84,7 @@ public:
 
     /// Takes the sand of a resumed session. The painter's box stays that of the scene's start.
     void resume(const base::Bytes& state) {
-        replica_->decodeState(state, told(cluster_, kPainterMade, kStateDecoded, state.size()));
+        replica_->decodeStateInPlace(state, told(cluster_, kPainterMade, kStateDecoded, state.size()));
     }
 
     [[nodiscard]] const GlContext& context() const { return *context_; }

@@ -388,7 +388,7 @@ base::Bytes StateCopy::encode(const std::function<void()>& between) const {
     return writer.take();
 }
 
-void Replica::decodeState(std::span<const std::uint8_t> bytes, const std::function<void(std::size_t)>& decoded) {
+void Replica::takeState(std::span<const std::uint8_t> bytes, const Surface::Decoding& how) {
     (void)base::needDefaultFloats();
     base::ByteReader reader(bytes);
     const auto head = base::read<StateHead>(reader);
@@ -396,10 +396,16 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes, const std::functi
     const std::size_t tiles = grid ? static_cast<std::size_t>(hashTiles().tileCount()) : 0;
     const Movement movement = Movement::decode(reader.getBlock(), head.number, tiles);
     const auto beforeStroke = reader.getBlock();
-    const std::function<void()> replace = surface_->decode(reader.rest(), beforeStroke, decoded);
+    const auto forget = [this] {
+        surface_->forget();    // before the sand changes, so that nothing of it is kept
+        surface_->follow({});  // the sand may have been wrong
+    };
+    if (how.inPlace) {
+        forget();
+    }
+    const std::function<void()> replace = surface_->decode(reader.rest(), beforeStroke, how);
     // From here on only std::bad_alloc can be thrown.
-    surface_->forget();    // before the sand changes, so that nothing of it is kept
-    surface_->follow({});  // the sand may have been wrong
+    forget();
     rules_.tuning = head.tuning;
     surface_->changeRules(rules_);
     replace();

@@ -216,7 +216,14 @@ public:
     /// scene and by the length of the bytes. After std::bad_alloc, call decodeState() again before other functions.
     /// Calls `decoded` again and again, unless it is empty, with the number of bytes that it has decoded since the last
     /// call: about all of them together. A state of a TIN is decoded without a call.
-    void decodeState(std::span<const std::uint8_t> bytes, const std::function<void(std::size_t)>& decoded = {});
+    void decodeState(std::span<const std::uint8_t> bytes, const std::function<void(std::size_t)>& decoded = {}) {
+        takeState(bytes, {decoded, false});
+    }
+    /// Does the same, but may leave any sand in the replica if it throws base::FormatError. A height field then has no
+    /// second copy of its heights in memory meanwhile.
+    void decodeStateInPlace(std::span<const std::uint8_t> bytes, const std::function<void(std::size_t)>& decoded = {}) {
+        takeState(bytes, {decoded, true});
+    }
 
     /// Flips bit `bit` (0 is the lowest) of one cell's height, or of the volume of a TIN's vertex in that cell's
     /// triangle. The hash is not updated. Tests and drills inject this fault to prove that a divergence is found.
@@ -234,6 +241,7 @@ private:
     };
     [[nodiscard]] StateHead head() const;
     [[nodiscard]] base::Bytes encodedMovement() const;
+    void takeState(std::span<const std::uint8_t> bytes, const Surface::Decoding& how);
     /// Returns whether `step` moves a tool that is in the sand before the step or after it.
     [[nodiscard]] bool movesTool(const Step& step) const;
     /// Returns whether `step` moves a tool that is in the sand, or gives it another shape.

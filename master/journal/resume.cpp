@@ -203,7 +203,7 @@ base::Bytes replaceByCheckpoint(const fs::path& file, const journal::JournalHead
     if (checkpoint.session != header.session || checkpoint.sceneDigest != replica.rules().digest()) {
         throw base::FormatError("is of another session");
     }
-    replica.decodeState(checkpoint.state);
+    replica.decodeStateInPlace(checkpoint.state);
     if (replica.stepNumber() != checkpoint.step || replica.stateHash() != checkpoint.stateHash) {
         throw base::FormatError("its sand differs from its hash");
     }

@@ -88,6 +88,7 @@ std::size_t Erosion::bytes() const {
 
 Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle,
                               const std::function<void(const CellRect&)>& willChange) {
+    packed_.reset();
     wakeTouched();
     std::int64_t outflow = 0;
     for (int n = 0; n < part.sweeps && !settled(); ++n) {
@@ -171,6 +172,13 @@ void Erosion::addFluxes(NetFlux& sum) const {
 }
 
 Inertia Erosion::inertia() const {
+    if (!packed_) {
+        packed_ = packedInertia();
+    }
+    return *packed_;
+}
+
+Inertia Erosion::packedInertia() const {
     Inertia inertia(undisturbed_);
     const TileGrid grid(east_.bounds());
     const std::vector<bool> flows = tilesWithFlux(grid);
@@ -198,6 +206,7 @@ void Erosion::addFluxes(CellRect cells, Inertia& inertia) const {
 }
 
 void Erosion::resume(const Inertia& inertia) {
+    packed_.reset();
     for (CellArray* flux : {&east_, &north_}) {
         *flux = CellArray(flux->columns(), flux->rows());
     }

@@ -85,7 +85,8 @@ public:
     /// Returns the age of the inertia: the number of sweeps that moved sand since touch(), at most
     /// Inertia::kMostCounted [sweep].
     [[nodiscard]] int undisturbed() const { return undisturbed_; }
-    /// Returns everything except heights and rules that later sweeps depend on: the last fluxes and their age.
+    /// Returns everything except heights and rules that later sweeps depend on: the last fluxes and their age. Calls of
+    /// the same moment share the packed fluxes, so that only the first one takes time.
     [[nodiscard]] Inertia inertia() const;
     /// Returns for each tile of `grid` whether its cells, or the rim beside them, may have a flux other than 0.
     [[nodiscard]] std::vector<bool> tilesWithFlux(const TileGrid& grid) const;
@@ -111,6 +112,7 @@ public:
     [[nodiscard]] std::size_t bytes() const;
 
 private:
+    [[nodiscard]] Inertia packedInertia() const;
     [[nodiscard]] CellRect cellsOf(const CellRect& blocks) const;
     /// Returns the blocks of `cells` and one more on each side [block].
     [[nodiscard]] CellRect blocksAround(const CellRect& cells) const;
@@ -148,7 +150,8 @@ private:
     BlockMarks moved_;              // blocks changed since takeMoved()
     FlowBits flowed_;               // bits of this sweep; 0 between sweeps
     ErosionWalk walk_;
-    std::vector<std::uint32_t> steep_;  // memory of RestingBlocks
+    std::vector<std::uint32_t> steep_;       // memory of RestingBlocks
+    mutable std::optional<Inertia> packed_;  // of this moment; nullopt until inertia() is called
 };
 
 }  // namespace sand::grid

@@ -38,6 +38,7 @@ void Erosion::touch(const CellRect& cells) {
     if (!cells.empty()) {
         wake(cells);
         undisturbed_ = 0;
+        packed_.reset();
     }
 }
 

@@ -103,6 +103,10 @@ private:
 void Inertia::keep(const CellArray& east, const CellArray& north, const CellRect& cells) {
     Piece piece{copyOf(east, cells), copyOf(north, cells)};
     if (piece.east != nullptr || piece.north != nullptr) {
+        for (const auto& fluxes : {piece.east, piece.north}) {
+            bytes_ += fluxes == nullptr ? 0 : fluxes->bytes();
+        }
+        bytes_ += static_cast<std::int64_t>(sizeof piece);
         pieces_.push_back(std::move(piece));
     }
 }
@@ -116,15 +120,6 @@ void Inertia::putInto(CellArray& east, CellArray& north) const {
             piece.north->putInto(north);
         }
     }
-}
-
-std::int64_t Inertia::bytes() const {
-    auto bytes = static_cast<std::int64_t>(pieces_.capacity() * sizeof(Piece));
-    for (const Piece& piece : pieces_) {
-        bytes +=
-            (piece.east != nullptr ? piece.east->bytes() : 0) + (piece.north != nullptr ? piece.north->bytes() : 0);
-    }
-    return bytes;
 }
 
 void Inertia::encode(std::shared_ptr<const PackedCells> Piece::*fluxes, int columns, int rows, base::ByteWriter& writer,

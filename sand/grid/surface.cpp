@@ -301,13 +301,13 @@ SurfaceReader GridSurface::reader() const {
 void GridSurface::replace(const SurfaceCopy& copy) {
     const auto& sand = dynamic_cast<const Snapshot&>(copy);
     willBecome(sand.field);
-    become(HeightField(sand.field), sand.inertia, sand.outflow);
+    field_ = sand.field;
+    resume({sand.inertia, sand.outflow});
 }
 
-void GridSurface::become(HeightField&& field, const Inertia& inertia, std::int64_t outflow) {
-    field_ = std::move(field);
-    erosion_.resume(inertia);
-    outflow_ = outflow;
+void GridSurface::resume(const SandRest& rest) {
+    erosion_.resume(rest.inertia);
+    outflow_ = rest.outflow;
     touchAll();
     (void)followed_.restored();
 }
@@ -318,16 +318,26 @@ void GridSurface::encodeInto(base::ByteWriter& writer) const {
 }
 
 std::function<void()> GridSurface::decode(std::span<const std::uint8_t> sand, std::span<const std::uint8_t> kept,
-                                          const std::function<void(std::size_t)>& decoded) {
+                                          const Decoding& how) {
     const SandLimits limits{
         {field_.columns(), field_.rows(), rules_.rim, rules_.aspect}, field_.cellSize(), ground_.get()};
-    const auto next = std::make_shared<Snapshot>(Snapshot::decode(sand, limits, decoded));
+    if (how.inPlace) {
+        completeCopiesOf(field_.bounds());
+    }
+    const auto other =
+        how.inPlace ? nullptr : std::make_shared<HeightField>(field_.columns(), field_.rows(), field_.cellSize());
+    HeightField& next = how.inPlace ? field_ : *other;
+    const auto rest =
+        std::make_shared<SandRest>(decodeSand(sand, limits, {[&next](int y) { return next.row(y); }}, how.decoded));
     // The kept sand is decoded now, because at the undo it would be too late to refuse it.
-    const auto stroke = kept.empty() ? std::make_shared<Undo>()
-                                     : std::make_shared<Undo>(Undo::decode(kept, limits, next->field, decoded));
-    return [this, next, stroke] {
-        willBecome(next->field);
-        become(std::move(next->field), next->inertia, next->outflow);
+    const auto stroke =
+        kept.empty() ? std::make_shared<Undo>() : std::make_shared<Undo>(Undo::decode(kept, limits, next, how.decoded));
+    return [this, other, rest, stroke] {
+        if (other != nullptr) {
+            willBecome(*other);
+            field_ = std::move(*other);
+        }
+        resume(*rest);
         beforeStroke_ = std::move(*stroke);
     };
 }

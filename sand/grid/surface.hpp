@@ -55,7 +55,7 @@ public:
     void encodeInto(base::ByteWriter& writer) const override;
     void encodeKept(base::ByteWriter& writer) const override { beforeStroke_.encodeInto(field_, writer); }
     [[nodiscard]] std::function<void()> decode(std::span<const std::uint8_t> sand, std::span<const std::uint8_t> kept,
-                                               const std::function<void(std::size_t)>& decoded) override;
+                                               const Decoding& how) override;
 
     [[nodiscard]] std::shared_ptr<SurfaceRecord> record() override;
     void follow(SurfaceRecords records) override { followed_.follow(std::move(records)); }
@@ -94,8 +94,8 @@ private:
     void willChangeHeights(const CellRect& cells);
     /// Must be called before the heights become those of `field`.
     void willBecome(const HeightField& field);
-    /// Replaces the sand by `sand`. Call willBecome() before it.
-    void become(HeightField&& field, const Inertia& inertia, std::int64_t outflow);
+    /// Takes the rest of the sand whose heights the field has. Call willBecome() before the heights change.
+    void resume(const SandRest& rest);
     /// Lets begun copies take the sand of `cells`, if they lack it.
     void completeCopiesOf(const CellRect& cells) const;
     /// Lets records forget tiles that a change of the whole field has left alone.

@@ -161,16 +161,21 @@ public:
     /// Writes what copy() and the kept snapshot would, without copying the sand. encodeKept() requires hasKept().
     virtual void encodeInto(base::ByteWriter& writer) const = 0;
     virtual void encodeKept(base::ByteWriter& writer) const = 0;
+    /// How decode() decodes sand.
+    struct Decoding {
+        /// Called again and again, unless it is empty, with the number of bytes that were decoded since the last call.
+        /// A TIN never calls it, because a TIN is small.
+        const std::function<void(std::size_t)>& decoded;
+        /// Whether the surface may have any sand after a base::FormatError. A height field then has no second copy of
+        /// its heights in memory. Call forget() and follow({}) before.
+        bool inPlace = false;
+    };
     /// Decodes what encodeInto() and encodeKept() wrote; `kept` is empty if no sand was kept. Throws base::FormatError
     /// if the bytes are not sand for this surface. Returns a function that replaces the sand and the kept sand by the
     /// decoded ones. It throws at most std::bad_alloc. Call it at most once, before the surface changes otherwise; only
-    /// changeRules() and forget() may be called before.
-    ///
-    /// Calls `decoded` again and again, unless it is empty, with the number of bytes that it has decoded since the last
-    /// call. A TIN never calls it, because a TIN is small.
+    /// changeRules(), forget() and follow() may be called before.
     [[nodiscard]] virtual std::function<void()> decode(std::span<const std::uint8_t> sand,
-                                                       std::span<const std::uint8_t> kept,
-                                                       const std::function<void(std::size_t)>& decoded) = 0;
+                                                       std::span<const std::uint8_t> kept, const Decoding& how) = 0;
 
     /// Returns the volume that left the field over an open rim [unit · cell; for a TIN: unit · probe unit² / 6].
     [[nodiscard]] virtual std::int64_t outflow() const = 0;

@@ -57,7 +57,7 @@ public:
     void encodeInto(base::ByteWriter& writer) const override { copy()->encodeInto(writer, {}); }
     void encodeKept(base::ByteWriter& writer) const override { beforeStroke_.copy()->encodeInto(writer, {}); }
     [[nodiscard]] std::function<void()> decode(std::span<const std::uint8_t> sand, std::span<const std::uint8_t> kept,
-                                               const std::function<void(std::size_t)>& decoded) override;
+                                               const Decoding& how) override;
 
     [[nodiscard]] std::shared_ptr<SurfaceRecord> record() override { return records_.record(layer_, state_); }
     void follow(SurfaceRecords records) override { records_.follow(layer_, std::move(records)); }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 
 #include "sand/replica.hpp"
@@ -19,8 +20,9 @@ namespace {
 using sand::Replica;
 using sand::Step;
 
-/// Applies a random step and what is owed after it. After each, another replica loads the state and the saved sand.
-void play(Replica& sand, const scene::Scene& scene, const Step& step, std::mt19937& random) {
+/// Applies a random step and what is owed after it. After each, another replica loads the state and the saved sand, and
+/// `inPlace`, which has an earlier state or half of one, loads the state too.
+void play(Replica& sand, Replica& inPlace, const scene::Scene& scene, const Step& step, std::mt19937& random) {
     Step next = step;
     for (int part = 0; part == 0 || (sand.owed().any() && part < 40); ++part) {
         next.number = sand.stepNumber() + 1;
@@ -28,7 +30,16 @@ void play(Replica& sand, const scene::Scene& scene, const Step& step, std::mt199
         sand.apply(next);
         next = {.engaged = sand.engaged()};
         Replica other(scene);
-        ASSERT_NO_THROW(other.decodeState(sand.encodeState())) << "step " << sand.stepNumber();
+        const base::Bytes state = sand.encodeState();
+        ASSERT_EQ(sand.copyState().encode(), state) << "step " << sand.stepNumber();
+        ASSERT_NO_THROW(other.decodeState(state)) << "step " << sand.stepNumber();
+        if (random() % 4 == 0) {
+            EXPECT_THROW(inPlace.decodeStateInPlace(std::span(state).first(random() % state.size())),
+                         base::FormatError);
+        }
+        ASSERT_NO_THROW(inPlace.decodeStateInPlace(state)) << "step " << sand.stepNumber();
+        ASSERT_EQ(inPlace.stateHash(), sand.stateHash()) << "step " << sand.stepNumber();
+        ASSERT_EQ(inPlace.encodeState(), other.encodeState()) << "step " << sand.stepNumber();
         ASSERT_EQ(other.stateHash(), sand.stateHash()) << "step " << sand.stepNumber();
         ASSERT_EQ(other.movementDigest(), sand.movementDigest()) << "step " << sand.stepNumber();
         ASSERT_NO_THROW((void)sand.sandReader()(sand.copySand()->encode())) << "step " << sand.stepNumber();
@@ -58,9 +69,9 @@ TEST(StatesOfSessions, AreReadAgainOnGrids) {
         SCOPED_TRACE(test::again(seed + i));
         worlds::World world(seed + i, 40, 30, false);
         const scene::Scene scene = randomScene(world);
-        Replica sand(scene);
+        Replica sand(scene), inPlace(scene);
         for (int step = 0; step < 20 && !testing::Test::HasFatalFailure(); ++step) {
-            play(sand, scene, spread::randomStep(scene.rules, sand, world.random), world.random);
+            play(sand, inPlace, scene, spread::randomStep(scene.rules, sand, world.random), world.random);
         }
     }
 }
@@ -71,9 +82,9 @@ TEST(StatesOfSessions, AreReadAgainOnTins) {
         scene::Scene scene = samples::tinScene();
         scene.rules.rim = i % 2 == 0 ? sand::Rim::closed : sand::Rim::open;
         scene.rules.tuning.startThreshold += i % 4 < 2 ? 0 : scene.rules.tuning.threshold / 2;
-        Replica sand(scene);
+        Replica sand(scene), inPlace(scene);
         for (int step = 0; step < 20 && !testing::Test::HasFatalFailure(); ++step) {
-            play(sand, scene, spread::randomStep(scene.rules, sand, random), random);
+            play(sand, inPlace, scene, spread::randomStep(scene.rules, sand, random), random);
         }
     }
 }
