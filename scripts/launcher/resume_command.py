@@ -11,6 +11,7 @@ from base.console import print_line
 POINTER = "pointer"
 # The session would end at once, be as fast as it can, have the drills again, or write a recording over another one.
 LEFT_OUT = ("--visible-tool", "--steps", "--frames", "--warm-up", "--pace", "--inject", "--record")
+USUAL = {"restarts": 3, "restart_window": 60}  # of options of `run`; others have no default
 NAMED = ("--secret-file", "--stereo", "--desk", "--gl")  # words_of() has them
 
 
@@ -28,6 +29,11 @@ def words_of(args, out):
         value = getattr(args, option, None)
         words += [f"--{option.replace('_', '-')}", str(value)] if value else []
     words += ["--gl", args.gl] if args.gl != "auto" and args.device != POINTER else []
+    for option in ("restarts", "restart_window", "wait_for_wall", "gl_threads"):
+        value = getattr(args, option, None)
+        if value is not None and value != USUAL.get(option):
+            words += [f"--{option.replace('_', '-')}", str(program_options.whole(value))]
+    words += ["--json"] if getattr(args, "json", False) else []
     for given in getattr(args, "env", []):
         words += ["--env", given.partition("=")[0]]
     return words + words_of_programs(args) + (["--here"] if args.here else [])

@@ -4,7 +4,6 @@
 import concurrent.futures
 import errno
 import pathlib
-import re
 import shlex
 import shutil
 import socket
@@ -13,7 +12,7 @@ import tempfile
 
 from base import checked_json, marked_answer, session_folder
 from base.bad_input import BadInput
-from hosts import first_frame, machine_needs
+from hosts import first_frame, machine_needs, reachable
 from hosts.examined_host import ANSWER_SECONDS, is_red, machines, show
 from job import open_mpi
 from job.rank_hosts import HERE
@@ -23,10 +22,10 @@ MOST_CLOCK_SECONDS = 1.0  # a session subtracts the difference; a larger one mak
 RANK_MEGABYTES = 256  # a rank of 512 x 512 cells and 1024 x 768 pixels holds about 140
 OUT_MEGABYTES = 256
 MOST_HOSTS_AT_ONCE = 32
-# Commands for a host, whose answers begin with a word each. {node} is the path of the render rank's program there.
+# Commands for a host, whose answers begin with a word each. {node} and {check} are the paths of programs there.
 QUESTIONS = (marked_answer.SAY + '; {node} --version --json 2>&1 | say build; '
              'mpirun --version 2>&1 | say mpi; '
-             'echo "memory $(sed -n "s/^MemAvailable: *//p" /proc/meminfo)"; '
+             '{check} --free-memory 2>&1 | say memory; '
              'df -Pk /dev/shm 2>&1 | say shm; df -Pk "${TMPDIR:-/tmp}" 2>&1 | say tmp; '
              'echo "client $SSH_CONNECTION"')
 
@@ -101,7 +100,8 @@ class Doctor:
 
     def reach(self, host):
         """Returns the host's answers by their first words, or None if the host cannot be reached."""
-        status, said, complaint = host.ask.run(QUESTIONS.replace("{node}", shlex.quote(self.node)))
+        check = reachable.check_beside(self.node)
+        status, said, complaint = host.ask.run(QUESTIONS.replace("{node}", shlex.quote(self.node)).replace("{check}", shlex.quote(check)))
         answers = marked_answer.named_lines(said)
         if "memory" not in answers:
             host.add(False, "ssh", f"cannot be reached: {marked_answer.last_line(complaint) or f'exit status {status}'}; "
@@ -134,8 +134,12 @@ class Doctor:
             host.add(True, "mpi", mpi)
 
     def check_memory(self, host, answers):
-        words = answers.get("memory", "").split()
-        free = int(words[0]) // 1024 if words and re.fullmatch("[0-9]{1,15}", words[0]) else 0
+        said = reachable.FREE.fullmatch(answers["memory"])
+        if not said:
+            host.add(False, "memory", f"{reachable.check_beside(self.node)} does not answer ({marked_answer.last_line(answers['memory'])}); "
+                     "install the same build at the same path everywhere")
+            return
+        free = int(said[1]) >> 20
         slots = max(1, host.slots)
         needed = RANK_MEGABYTES * slots
         line = f"{free} MiB free, {slots} rank{'s' if slots > 1 else ''} may take {needed}"

@@ -25,7 +25,8 @@ host=$1; shift
 case $host in
     away*) echo "ssh: connect to host $host port 22: No route to host" >&2; exit 255 ;;
     old*) export MADE_UP_BUILD=00000000000000ff ;;
-    small*) export MADE_UP_MEMORY=1 ;;
+    small*) export MADE_UP_MEMORY=2097152 ;;
+    bare*) export MADE_UP_NO_CHECK=1 ;;
     blind*) export MADE_UP_DISPLAY=none ;;
     narrow*) export MADE_UP_DISPLAY=narrow ;;
     late*) export MADE_UP_SHIFT=3600 ;;
@@ -47,9 +48,10 @@ echo "{\\"backend\\": \\"$4\\", \\"renderer\\": \\"made-up renderer\\", \\"short
 DATE = """#!/bin/sh
 exec /bin/date -d "@$(($(/bin/date +%s) + ${MADE_UP_SHIFT:-0}))" "$@"
 """
-SED = """#!/bin/sh
-[ -z "$MADE_UP_MEMORY" ] || { echo "2048 kB"; exit 0; }
-echo "8388608 kB"
+CHECK = """#!/bin/sh
+[ "$1" = --free-memory ] || exec "$0.of_walls" "$@"
+[ -z "$MADE_UP_NO_CHECK" ] || { echo "sandwall-check: cannot execute" >&2; exit 126; }
+echo "free ${MADE_UP_MEMORY:-8589934592}"
 """
 BASH = """#!/bin/sh
 [ -z "$MADE_UP_FIREWALL" ] || exit 1
@@ -64,8 +66,11 @@ class Doctor(LauncherTest):
         self.script("sandwall-render-node", NODE)
         self.script("sandwall-master", NODE)
         self.script("mpirun", "#!/bin/sh\necho \"$*\" >\"${0%/*}/started\"\n[ -z \"$MPI_FAULT\" ] || { echo \"$MPI_FAULT\" >&2; exit 1; }\n")
-        for name, text in (("date", DATE), ("sed", SED), ("bash", BASH)):
+        for name, text in (("date", DATE), ("bash", BASH)):
             self.script(name, text)
+        bin = self.folder / "bin"
+        (bin / "sandwall-check").rename(bin / "sandwall-check.of_walls")
+        self.script("sandwall-check", CHECK)
         self.name = socket.gethostname()
 
     def arguments(self, hosts, *options):
@@ -170,6 +175,10 @@ class Doctor(LauncherTest):
     def test_too_little_memory_is_red(self):
         self.assertEqual(self.only_red("small1", "memory"), "2 MiB free, 1 rank may take 256; "
                          "end other programs or spread the ranks")
+
+    def test_a_host_without_the_program_that_tells_its_memory_is_red(self):
+        self.assertEqual(self.only_red("bare1", "memory"), "bin/sandwall-check does not answer (sandwall-check: cannot execute); "
+                         "install the same build at the same path everywhere")
 
     def test_a_clock_of_another_hour_is_red(self):
         words = self.only_red("late1", "clock")
