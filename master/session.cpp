@@ -196,6 +196,9 @@ bool Session::showFrame(bool& more) {
         desk_.windows().turnWheels(pointers);
         steps_->pointed(pointers, desk_.windows().depth(), sand_.replica(), clock_.lastSwap());
     }
+    if (options_.record.check) {
+        options_.record.check->requireIfCompared();
+    }
     record_.keepTicks(steps_->ticks());  // before room is asked for, because ticks need it, too
     const ArrivedSteps steps = takeSteps();
     lockstep::FrameMessage composed = compose(steps);

@@ -25,7 +25,8 @@ struct RecordOptions {
     bool keepsJournal = true;  // false for a replay, which has a journal already
     JournalOptions journal;
     std::shared_ptr<const ResumedSession> resumed;  // session that is resumed; null for a new one
-    Failure failure;                                // failure that stopped the resumed session
+    std::shared_ptr<SceneCheck> check;  // of the file of the resumed session's scene; null if it is compared
+    Failure failure;                    // failure that stopped the resumed session
 };
 
 /// Writes the files of a running session: journal, checkpoints, incidents and recoveries. Used by one thread.

@@ -294,8 +294,12 @@ base::Bytes resumeSand(const lockstep::Cluster& cluster, World& world, ProgramOp
                        .replayed = told(cluster, "replay", "replays the journal", "the replay of its journal")},
                       options.session.executor);
     cluster.progressEnds();
-    stopped.check->require(world.scene, told(cluster, "read", "reads the scene", "the reading of its scene"));
-    cluster.progressEnds();
+    if (stopped.check->isShort()) {
+        stopped.check->require(told(cluster, "read", "reads the scene", "the reading of its scene"));
+        cluster.progressEnds();
+    } else {
+        options.session.record.check = stopped.check;
+    }
     sayResumed(resumed.session);
     options.session.record.resumed = std::make_shared<const ResumedSession>(std::move(resumed.session));
     return std::move(resumed.state);

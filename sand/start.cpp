@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "sand/model/grid_codec.hpp"
 
@@ -31,6 +32,13 @@ std::int64_t bytesOfCoarsePhase(const Rules& rules) {
 }
 
 }  // namespace
+
+HeightField unpackedHeights(const base::Bytes& packed, int columns, int rows, double cellSize) {
+    HeightField heights(columns, rows, cellSize);
+    base::ByteReader reader(packed);
+    decodeCells(reader, heights.bounds(), kMaxHeight, heights.cells());
+    return heights;
+}
 
 FieldSize FieldSize::of(const Rules& rules) { return {rules.columns, rules.rows, rules.tin != 0}; }
 
@@ -99,6 +107,22 @@ void Start::decodeSand(base::ByteReader& reader, double cellSize, Keep keep,
 HeightField Start::takeHeights() {
     volumeTaken = volumeOfHeights();
     return std::exchange(terrain, HeightField(1, 1, terrain.cellSize()));
+}
+
+HeightField Start::heightsAgain() const {
+    if (packed == nullptr) {
+        throw std::logic_error("Start::heightsAgain: the heights are gone");
+    }
+    return unpackedHeights(*packed, rules.columns, rules.rows, terrain.cellSize());
+}
+
+bool Start::hasHeights(const base::Bytes& other) const {
+    base::ByteReader reader(other);
+    std::vector<std::int32_t> row(static_cast<std::size_t>(terrain.columns()));
+    bool same = true;
+    const auto compare = [&](int y) { same = same && std::equal(row.begin(), row.end(), terrain.row(y)); };
+    decodeRows(reader, terrain.bounds(), kMaxHeight, {[&row](int) { return row.data(); }, compare});
+    return same;
 }
 
 void Start::dropHeights() {

@@ -36,6 +36,10 @@ struct FieldSize {
     friend bool operator==(const FieldSize&, const FieldSize&) = default;
 };
 
+/// Returns the heights that Start::packed has.
+[[nodiscard]] HeightField unpackedHeights(const base::Bytes& packed, int columns, int rows,
+                                          double cellSize /* [scene unit] */);
+
 /// Size of some sand in a message of too little memory, such as "300 x 200 cells", and what saves memory: "fewer
 /// cells".
 struct SizeText {
@@ -76,6 +80,10 @@ struct Start {
 
     /// Returns the heights of a height field, for a replica. Their mean and volume stay, as does `packed`.
     [[nodiscard]] HeightField takeHeights();
+    /// Returns the heights that takeHeights() has taken, unpacked from `packed`. Throws std::logic_error without it.
+    [[nodiscard]] HeightField heightsAgain() const;
+    /// Returns whether `terrain` has the heights of `other`, the `packed` of a Start of the same size.
+    [[nodiscard]] bool hasHeights(const base::Bytes& other) const;
     /// Frees the heights and `packed`, because all replicas have been made. Rules, cell size, TIN, ground, and the mean
     /// and volume of the heights stay. For a TIN, changes nothing.
     void dropHeights();

@@ -5,7 +5,6 @@
 
 #include "base/float_environment.hpp"
 #include "sand/grid/surface.hpp"
-#include "sand/model/grid_codec.hpp"
 #include "sand/tin/refine/start_maker.hpp"
 #include "sand/tin/surface.hpp"
 
@@ -22,9 +21,7 @@ public:
           cellSize_(start.terrain.cellSize()) {}
     const HeightField& field() {
         if (!field_) {
-            base::ByteReader reader(*packed_);
-            field_.emplace(columns_, rows_, cellSize_);
-            decodeCells(reader, field_->bounds(), kMaxHeight, field_->cells());
+            field_ = unpackedHeights(*packed_, columns_, rows_, cellSize_);
         }
         return *field_;
     }
@@ -43,12 +40,13 @@ std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* e
     if (start.tin != nullptr) {
         return std::make_unique<tin::TinSurface>(start.rules, start.tin);
     }
-    return std::make_unique<grid::GridSurface>(start.rules, start.terrain, start.ground,
-                                               grid::Erosion::Options{.executor = executor}, start.packed);
+    return std::make_unique<grid::GridSurface>(start.rules, start.volumeTaken ? start.heightsAgain() : start.terrain,
+                                               start.ground, grid::Erosion::Options{.executor = executor},
+                                               start.packed);
 }
 
 std::unique_ptr<Surface> makeSurfaceOfTaken(Start& start, const base::Executor* executor) {
-    if (start.tin != nullptr) {
+    if (start.tin != nullptr || start.volumeTaken) {
         return makeSurface(start, executor);
     }
     return std::make_unique<grid::GridSurface>(start.rules, start.takeHeights(), start.ground,

@@ -12,7 +12,8 @@
 namespace sand {
 
 /// Returns the sand that a replica begins with. `executor` shares out the work of a height field's sweeps, and must
-/// outlive the sand. If it is null, the calling thread does all work.
+/// outlive the sand. If it is null, the calling thread does all work. If the heights of `start` are taken, it unpacks
+/// them.
 [[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* executor = nullptr);
 
 /// Returns the same, and takes the heights of `start` (Start::takeHeights()) in place of a copy.

@@ -170,6 +170,8 @@ API const char* sw_material() { return digs.textAt(web::materialText(digs.dug->m
 API const char* sw_scene_material() { return digs.textAt(web::materialText(digs.dug->scene().material)); }
 /// Returns 1 if a stroke or an edit can be undone.
 API int sw_can_undo() { return digs.dug->canUndo() ? 1 : 0; }
+/// Returns 1 if an undo can be redone.
+API int sw_can_redo() { return digs.dug->canRedo() ? 1 : 0; }
 
 /// Encodes the journal of all steps. Returns its length [byte]; the bytes are at sw_state_bytes().
 API int sw_journal() {

@@ -224,7 +224,7 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
     Restoring with = how;
     with.opened = own ? &*own : how.opened;
     const auto begun = [&] {
-        return how.start != nullptr ? sand::Replica(*how.start, how.executor)
+        return how.start != nullptr ? sand::Replica::takingHeightsOf(*how.start, how.executor)
                                     : sand::Replica(journal::sceneOf(*with.opened), how.executor);
     };
     // A checkpoint replaces this sand. Two replicas of a large field would take seconds more.
@@ -264,9 +264,8 @@ std::optional<StoppedSession> openSession(const fs::path& journal, const std::st
     if (check) {
         check(stopped.opened);
     }
-    stopped.check = std::make_unique<SceneCheck>(scene, sand::FieldSize::of(journal::rulesOf(stopped.opened)),
-                                                 stopped.opened.place().journal);
     stopped.scene = journal::sceneOf(stopped.opened, scene::Scene::Keep::packedToo);
+    stopped.check = std::make_shared<SceneCheck>(scene, stopped.scene, stopped.opened.place().journal);
     stopped.scene.material = stopped.opened.header().material.value_or(scene::Material());
     return stopped;
 }
@@ -302,7 +301,7 @@ std::uint64_t walk(const StoppedSession& stopped, const std::function<void(doubl
 
 }  // namespace
 
-ResumedState resumeSession(const StoppedSession& stopped, const scene::Scene& scene, const ResumeProgress& progress,
+ResumedState resumeSession(const StoppedSession& stopped, scene::Scene& scene, const ResumeProgress& progress,
                            const base::Executor* executor) {
     ResumedSession session;
     session.material = scene.material;
@@ -314,7 +313,7 @@ ResumedState resumeSession(const StoppedSession& stopped, const scene::Scene& sc
                                          .newestCheckpoint = newest,
                                          .keepState = true,
                                          .progress = [&](double share) {
-                                             stopped.check->requireIfRead(scene);
+                                             stopped.check->requireIfCompared();
                                              if (progress.replayed) {
                                                  progress.replayed(share);
                                              }

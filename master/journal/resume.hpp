@@ -36,7 +36,9 @@ struct RestoredSand {
 /// How the sand is computed from a journal.
 struct Restoring {
     const base::Executor* executor = nullptr;  // see sand::Replica
-    const sand::Start* start = nullptr;  // of the journal's session; null: restoreSand() reads it from the journal
+    // Of the journal's session, with Start::packed; its heights are taken. Null: restoreSand() reads it from the
+    // journal.
+    sand::Start* start = nullptr;
     const journal::JournalReader* opened = nullptr;  // of the journal, before its first record; null: it is opened
     // Uses no checkpoint of a later step.
     std::uint64_t newestCheckpoint = std::numeric_limits<std::uint64_t>::max();
@@ -79,8 +81,7 @@ struct StoppedSession {
     std::filesystem::path journal;  // its file
     journal::JournalReader opened;  // of the journal, before its first record
     scene::Scene scene;
-    /// Reads the file of the scene in a thread. Call require() before the session begins.
-    std::unique_ptr<SceneCheck> check;
+    std::shared_ptr<SceneCheck> check;  // of the file of the scene; never null
 };
 
 /// Opens the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
@@ -120,10 +121,10 @@ struct ResumedState {
     base::Bytes state;
 };
 
-/// Computes the sand of `stopped` from the newest checkpoint and the later steps. `scene` is its scene. `executor` is
-/// for the replica. Throws base::InputError if the session cannot be continued; the text says what can be done with the
-/// journal.
-[[nodiscard]] ResumedState resumeSession(const StoppedSession& stopped, const scene::Scene& scene,
+/// Computes the sand of `stopped` from the newest checkpoint and the later steps. `scene` is its scene, whose heights
+/// it takes. `executor` is for the replica. Throws base::InputError if the session cannot be continued; the text says
+/// what can be done with the journal.
+[[nodiscard]] ResumedState resumeSession(const StoppedSession& stopped, scene::Scene& scene,
                                          const ResumeProgress& progress = {}, const base::Executor* executor = nullptr);
 
 }  // namespace master

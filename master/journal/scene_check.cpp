@@ -4,53 +4,73 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "base/float_environment.hpp"
 #include "base/input_error.hpp"
 #include "host/memory.hpp"
+#include "host/priority.hpp"
 #include "scene/load/memory.hpp"
 
 namespace master {
 
-SceneCheck::SceneCheck(std::string file, sand::FieldSize recorded, std::string journal)
-    : file_(std::move(file)), journal_(std::move(journal)) {
+SceneCheck::SceneCheck(std::string file, const scene::Scene& recorded, std::string journal)
+    : file_(std::move(file)), journal_(std::move(journal)), recorded_(recorded) {
     if (!file_.empty()) {
-        read_ = std::async(std::launch::async, [this, recorded] { return read(recorded); });
+        compared_ = std::async(std::launch::async, [this] { compare(); });
     }
 }
 
-scene::Scene SceneCheck::read(const sand::FieldSize& recorded) {
-    base::needDefaultFloats();
-    return scene::loadScene(file_, {.raster = scene::checksOfOneReplica(file_, host::freeMemoryOfProcess()).raster,
-                                    .field =
-                                        [&](const sand::FieldSize& size) {
-                                            if (size != recorded) {
-                                                refuse();
-                                            }
-                                        },
-                                    .progress = [this](double share) { share_ = share; }});
+bool SceneCheck::isShort() const {
+    constexpr std::int64_t kCells =
+        std::int64_t{2048} * 2048;  // a raster of so many pixels is read in tenths of a second
+    const sand::FieldSize size = recorded_.size();
+    return size.nominal || std::int64_t{size.columns} * size.rows <= kCells;
 }
 
-void SceneCheck::require(const scene::Scene& recorded, const std::function<void(double)>& progress) {
-    if (!read_.valid()) {
+void SceneCheck::compare() {
+    base::needDefaultFloats();
+    if (!isShort()) {
+        host::lowerPriority();
+    }
+    const auto progress = [this](double share) {
+        share_ = share;
+        if (stop_) {
+            throw std::runtime_error("the session has ended");  // nobody asks for the result
+        }
+    };
+    const scene::Scene read =
+        scene::loadScene(file_, {.raster = scene::checksOfOneReplica(file_, host::freeMemoryOfProcess()).raster,
+                                 .field =
+                                     [&](const sand::FieldSize& size) {
+                                         if (size != recorded_.size()) {
+                                             refuse();
+                                         }
+                                     },
+                                 .progress = progress});
+    if (!recorded_.isOf(read)) {
+        refuse();
+    }
+}
+
+void SceneCheck::require(const std::function<void(double)>& progress) {
+    if (!compared_.valid()) {
         return;
     }
     constexpr std::chrono::milliseconds kWait{100};
-    while (progress && read_.wait_for(kWait) != std::future_status::ready) {
+    while (progress && compared_.wait_for(kWait) != std::future_status::ready) {
         progress(share_);
     }
-    if (!read_.get().isSameAs(recorded)) {
-        refuse();
-    }
+    compared_.get();
     if (progress) {
         progress(1);
     }
 }
 
-void SceneCheck::requireIfRead(const scene::Scene& recorded) {
-    if (read_.valid() && read_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-        require(recorded);
+void SceneCheck::requireIfCompared() {
+    if (compared_.valid() && compared_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        compared_.get();
     }
 }
 

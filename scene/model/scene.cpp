@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+
+#include "sand/model/grid_codec.hpp"
 
 namespace scene {
 namespace {
@@ -125,10 +128,15 @@ base::Bytes Scene::encode() const {
     return writer.take();
 }
 
-bool Scene::isSameAs(const Scene& other) const {
+SceneIdentity::SceneIdentity(const Scene& scene)
+    : size_(sand::FieldSize::of(scene.rules)),
+      settings_(base::encoded(Whole<const Scene>{scene, Content::settings})),
+      heights_(scene.packed != nullptr ? scene.packed
+                                       : sand::packedCells(scene.terrain.cells(), scene.terrain.bounds())) {}
+
+bool SceneIdentity::isOf(const Scene& scene) const {
     // The rules have digests of the mesh of a TIN and of the ground.
-    return sameHeights(terrain, other.terrain) && base::encoded(Whole<const Scene>{*this, Content::settings}) ==
-                                                      base::encoded(Whole<const Scene>{other, Content::settings});
+    return settings_ == base::encoded(Whole<const Scene>{scene, Content::settings}) && scene.hasHeights(*heights_);
 }
 
 sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {

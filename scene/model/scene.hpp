@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,15 +58,28 @@ struct Scene : sand::Start {
     /// Returns the whole scene as bytes, which the master broadcasts and with which the journal begins. The bytes name
     /// files without their folders.
     [[nodiscard]] base::Bytes encode() const;
-    /// Returns whether both are the same scene. Statements, warnings and material do not count: the same scene may be
-    /// read by another path, and journals of earlier builds have no statements.
-    [[nodiscard]] bool isSameAs(const Scene& other) const;
     /// Reads what encode() wrote, except warnings and material. Throws base::FormatError for invalid bytes. Calls
     /// `decoded` as decodeSand() does.
     static Scene decode(std::span<const std::uint8_t> bytes, Keep keep = Keep::heights,
                         const std::function<void(std::size_t)>& decoded = {});
     /// Decodes only the rules, which give the size of the rest. Throws base::FormatError.
     static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);
+};
+
+/// That by which another scene is recognised as the same one, without its heights in memory. Statements, warnings and
+/// material do not count: the same scene may be read by another path, and journals of earlier builds have no
+/// statements.
+class SceneIdentity {
+public:
+    /// Shares Start::packed of `scene`, or makes it.
+    explicit SceneIdentity(const Scene& scene);
+    [[nodiscard]] bool isOf(const Scene& scene) const;
+    [[nodiscard]] sand::FieldSize size() const { return size_; }
+
+private:
+    sand::FieldSize size_;
+    base::Bytes settings_;
+    std::shared_ptr<const base::Bytes> heights_;
 };
 
 }  // namespace scene

@@ -141,6 +141,27 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
                   "other.toml: ");
 }
 
+// A large scene is compared while the session runs. Its sand comes from the journal, so nothing is lost.
+TEST_F(Resuming, OfALargeFieldWithAnotherSceneEndsAsSoonAsTheScenesAreCompared) {
+    const auto scene = [this](const std::string& height) {
+        return write("level" + height + ".toml",
+                     "name = \"level\"\n[field]\ncolumns = 2100\nrows = 2100\n[terrain]\nheight = " + height +
+                         "\n[material]\n[tool]\nradius = 0.04\n");
+    };
+    const std::vector<std::string> words{"--wall", wall(1, 1), "--out", out(), "--no-pictures", "--restarts", "0"};
+    const auto with = [&](std::initializer_list<std::string> more) {
+        std::vector<std::string> all = words;
+        all.insert(all.end(), more);
+        return all;
+    };
+    ASSERT_EQ(runToEnd(with({"--scene", scene("0.1"), "--steps", "3"})).status, 0);
+    const Ended other = runToEnd(with({"--scene", scene("0.2"), "--resume", "--frames", "100000"}));
+    EXPECT_EQ(other.status, 2) << other.output;
+    EXPECT_NE(other.output.find("level0.2.toml: is not the scene of the session in "), std::string::npos)
+        << other.output;
+    EXPECT_EQ(runToEnd(with({"--scene", scene("0.1"), "--resume", "--frames", "3"})).status, 0);
+}
+
 /// Untouched walls. The master numbers the steps, and makes none while nothing moves.
 class Rest : public SessionTest {
 protected:

@@ -286,20 +286,22 @@ TEST_F(SceneFile, WhatItsFilesMeanSurvivesItsEncoding) {
     scene::Scene other = scene;
     other.terrain.setHeight(1, 1, scene.terrain.height(1, 1) + 1);
     for (const scene::Scene* same : std::array<const scene::Scene*, 3>{&scene, &old, &moved}) {
-        EXPECT_TRUE(same->isSameAs(scene::Scene::decode(bytes)));
-        EXPECT_TRUE(same->isSameAs(scene::Scene::decode(before)));
-        EXPECT_FALSE(same->isSameAs(scene::Scene::decode(other.encode())));
+        const scene::SceneIdentity identity(*same);
+        EXPECT_TRUE(identity.isOf(scene::Scene::decode(bytes)));
+        EXPECT_TRUE(identity.isOf(scene::Scene::decode(before)));
+        EXPECT_FALSE(identity.isOf(scene::Scene::decode(other.encode())));
     }
     scene::Scene placed = scene;
     placed.georeference.west = 7;
-    EXPECT_FALSE(scene.isSameAs(placed));
-    EXPECT_FALSE(placed.isSameAs(scene));
+    const scene::SceneIdentity identity(scene);
+    EXPECT_FALSE(identity.isOf(placed));
+    EXPECT_FALSE(scene::SceneIdentity(placed).isOf(scene));
     for (const auto change :
          {+[](scene::Scene& it) { it.rules.ground = 1; }, +[](scene::Scene& it) { it.rules.tin = 1; },
           +[](scene::Scene& it) { it.look.detail = 2; }, +[](scene::Scene& it) { it.name = "z"; }}) {
         scene::Scene changed = scene;
         change(changed);
-        EXPECT_FALSE(scene.isSameAs(changed));
+        EXPECT_FALSE(identity.isOf(changed));
     }
 }
 

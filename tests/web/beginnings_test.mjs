@@ -20,6 +20,7 @@ class Replica {
     rests = true;
     settlesNext = false;
     canUndo = false;
+    canRedo = false;
     materialText = "{}";
     words = {};
     sceneMaterial = {};

@@ -12,6 +12,7 @@ class Replica {
     rests = true;
     settlesNext = false;
     canUndo = false;
+    canRedo = false;
     materialText = "{}";
     hash = "";
     point(numbers) {

@@ -7,6 +7,7 @@ export function controlsOf(page) {
     const data = () => page.evaluate(() => ({ ...document.body.dataset }));
     const value = (id) => page.$eval(id, (control) => control.value || control.textContent);
     const canUndo = () => page.$eval("#undo", (button) => !button.disabled);
+    const canRedo = () => page.$eval("#redo", (button) => !button.disabled);
     const digs = (name) => until(`document.body.dataset.digging === "${name}" && document.body.dataset.hand === "yes" && document.body.dataset.shown && document.body.dataset.step > 2`);
     async function steps(count) {
         const step = Number((await data()).step ?? 0) + count;
@@ -43,5 +44,5 @@ export function controlsOf(page) {
         const { left, right, top, bottom } = it.getBoundingClientRect();
         return left < -1 || right > innerWidth + 1 || top < -1 || bottom > innerHeight + 1 || (it.matches("button") && it.scrollWidth > it.clientWidth + 1);
     }).map((it) => it.id || it.textContent), within);
-    return { until, data, value, canUndo, digs, steps, at, drag, heightAt, eye, cut };
+    return { until, data, value, canUndo, canRedo, digs, steps, at, drag, heightAt, eye, cut };
 }

@@ -13,7 +13,7 @@ const folder = fs.mkdtempSync(path.join(os.tmpdir(), "page-")), grid = path.join
 fs.writeFileSync(grid, `ncols 60\nnrows 60\nxllcorner 4000\nyllcorner 5000\ncellsize 1\n${"0 ".repeat(3600)}\n`);
 const { address, end } = await serve(), browser = await launch("chromium");
 const page = await browser.newPage(), complaints = complaintsOf(page, address);
-const { until, data, value, canUndo, digs, steps, at, drag, heightAt, eye, cut } = controlsOf(page);
+const { until, data, value, canUndo, canRedo, digs, steps, at, drag, heightAt, eye, cut } = controlsOf(page);
 
 /** The page opens with dunes, an invitation and three pictures. The first touch ends the invitation. */
 async function firstScreen() {
@@ -162,7 +162,7 @@ async function keys() {
     await page.keyboard.press("Escape");
     await page.keyboard.press("q");
     await steps(5);
-    assert.deepEqual([(await data()).digging, await canUndo()], ["flat", true], "Escape and Q leave the sand");
+    assert.deepEqual([(await data()).digging, await canUndo(), await canRedo()], ["flat", true, false], "Escape and Q leave the sand");
     const withControl = async (key) => {
         await page.keyboard.down("Control");
         await page.keyboard.press(key);
@@ -172,7 +172,7 @@ async function keys() {
     for (let tries = 0; tries < 20 && await canUndo(); ++tries) {  // the stroke, and the changes of the humidity before it
         await withControl("z");
     }
-    assert.equal(await canUndo(), false, "all is undone");
+    assert.deepEqual([await canUndo(), await canRedo()], [false, true], "all is undone");
     await until(`document.getElementById("number").value === "0"`);
     await withControl("y");
     assert.ok(await canUndo(), "an entry is back");

@@ -120,6 +120,7 @@ export class HandSource implements StepSource {
         if (this.replica.materialText !== this.toldMaterial) {  // an undo or a redo has changed it
             this.tellMaterial();
         }
-        this.stage.tell({ kind: "dug", step: this.toldStep, hash: this.replica.hash, undo: this.replica.canUndo, busy });
+        const { hash, canUndo: undo, canRedo: redo } = this.replica;
+        this.stage.tell({ kind: "dug", step: this.toldStep, hash, undo, redo, busy });
     }
 }

@@ -117,7 +117,7 @@ export class DigPanel {
             this.scene = sand.name;
             this.ofScene = sand.sceneMaterial;
             this.showDepth(sand.words.depth.usual);
-            element<HTMLButtonElement>("undo").disabled = true;
+            this.offerReturns(false, false);
         }
     }
     showMaterial(message: MaterialMessage): void {
@@ -135,5 +135,9 @@ export class DigPanel {
         showOthers("hand", message, ["kind", "material", "tool"]);
         showOthers("tool", message.tool, ["kind", "radius", "width", "heading", "foot"]);
     }
-    showStep({ undo }: DugMessage): void { element<HTMLButtonElement>("undo").disabled = !undo; }
+    showStep({ undo, redo }: DugMessage): void { this.offerReturns(undo, redo); }
+    private offerReturns(undo: boolean, redo: boolean): void {
+        element<HTMLButtonElement>("undo").disabled = !undo;
+        element<HTMLButtonElement>("redo").disabled = !redo;
+    }
 }

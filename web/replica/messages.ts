@@ -143,7 +143,8 @@ export interface DugMessage {
     kind: "dug";
     step: number;
     hash: string;
-    undo: boolean;             // whether the last stroke can be undone
+    undo: boolean;             // whether a stroke or an edit can be undone
+    redo: boolean;             // whether an undo can be redone
     busy: string;
 }
 

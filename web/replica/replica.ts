@@ -142,6 +142,7 @@ export class Replica {
     get materialText(): string { return this.text(this.wasm._sw_material()); }
     get sceneMaterial() { return this.json(this.wasm._sw_scene_material()); }
     get canUndo(): boolean { return this.wasm._sw_can_undo() === 1; }
+    get canRedo(): boolean { return this.wasm._sw_can_redo() === 1; }
     ask(edit: string): void { this.withText(edit, (at) => this.wasm._sw_ask(at)); }
     setDepth(depth: number): void { this.require(this.wasm._sw_set_depth(depth)); }
     setMaterial(word: string, value: number): void { this.withText(word, (at) => this.wasm._sw_set_material(at, value)); }

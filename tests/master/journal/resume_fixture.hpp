@@ -69,7 +69,7 @@ protected:
     static std::string refusal(const std::filesystem::path& journal, const std::string& scene = "") {
         try {
             const auto session = test::readSession(journal, scene);
-            session->check->require(session->scene);
+            session->check->require();
         } catch (const base::InputError& error) {
             return error.what();
         }

@@ -25,7 +25,8 @@ inline std::optional<ReadSession> readSession(const std::filesystem::path& journ
     if (!stopped) {
         return std::nullopt;
     }
-    master::ResumedState resumed = master::resumeSession(*stopped, stopped->scene, progress);
+    scene::Scene taken = stopped->scene;
+    master::ResumedState resumed = master::resumeSession(*stopped, taken, progress);
     return ReadSession{std::move(resumed.session), std::move(stopped->scene), std::move(stopped->check),
                        std::move(resumed.state)};
 }
