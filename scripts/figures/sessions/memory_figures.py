@@ -28,7 +28,7 @@ from sessions.raster_session import RasterSession, print_table
 from hosts import session_memory
 
 KINDS = ("moving", "smooth", "rough")
-STROKES = "speed 0.05\ndepth 0.5\n" + "stroke\npoint -0.3 0\npoint -0.2 0.2\n" * 12  # a later stroke begins while all sand moves
+STROKES = "speed 2\ndepth 0.5\ntravel 8\n" + "stroke\npoint -0.3 0\npoint -0.28 0.02\n" * 100  # later strokes begin while all sand moves
 NAMES = {"sandwall-haptic-server": "haptic server", "sandwall-master": "master", "sandwall-render-node": "rank"}
 FLOAT_HEADER = raster_session.HEADER.replace("NBITS 16\nPIXELTYPE SIGNEDINT", "NBITS 32\nPIXELTYPE FLOAT").replace("XDIM 30\nYDIM 30", "XDIM 1\nYDIM 1")
 
