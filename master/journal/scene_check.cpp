@@ -23,10 +23,8 @@ SceneCheck::SceneCheck(std::string file, const scene::Scene& recorded, std::stri
 }
 
 bool SceneCheck::isShort() const {
-    constexpr std::int64_t kCells =
-        std::int64_t{2048} * 2048;  // a raster of so many pixels is read in tenths of a second
-    const sand::FieldSize size = recorded_.size();
-    return size.nominal || std::int64_t{size.columns} * size.rows <= kCells;
+    constexpr std::int64_t kBytes = std::int64_t{16} << 20;  // of 2048 x 2048 heights, read in tenths of a second
+    return recorded_.size().bytesOfHeights() <= kBytes;
 }
 
 void SceneCheck::compare() {

@@ -8,7 +8,13 @@ namespace {
 /// Checks the heights of sand, row by row.
 class PossibleSand {
 public:
-    PossibleSand(const SandLimits& limits, std::int64_t outflow) : limits_(limits), sum_(outflow), outflow_(outflow) {}
+    /// Throws if no field with heights within ±kMaxHeight can have lost so much.
+    PossibleSand(const SandLimits& limits, std::int64_t outflow /* [unit · cell] */)
+        : limits_(limits), most_(std::int64_t{kMaxHeight} * limits.faces.columns * limits.faces.rows), sum_(outflow) {
+        if (outflow < -2 * most_ || outflow > 2 * most_) {
+            refuse();
+        }
+    }
 
     /// Throws if the surface of the sand lies below rock. Sand of negative thickness would draw sand out of its
     /// neighbours until heights overflow.
@@ -20,19 +26,18 @@ public:
             }
         }
     }
-    /// Throws unless volume and outflow are possible for a field whose heights are within ±kMaxHeight.
+    /// Throws unless volume and outflow are possible together. Call it after all rows.
     void finish() const {
-        const std::int64_t most =
-            std::int64_t{kMaxHeight} * limits_.faces.columns * limits_.faces.rows;  // [unit · cell], at most 2^56
-        const bool possible = outflow_ >= -2 * most && outflow_ <= 2 * most;
-        if (!possible || sum_ < -most || sum_ > most) {
-            throw base::FormatError("sand whose outflow is more than all of its sand");
+        if (sum_ < -most_ || sum_ > most_) {
+            refuse();
         }
     }
 
 private:
+    [[noreturn]] static void refuse() { throw base::FormatError("sand whose outflow is more than all of its sand"); }
+
     const SandLimits& limits_;
-    std::int64_t sum_, outflow_;  // [unit · cell]
+    std::int64_t most_, sum_;  // [unit · cell]; `most_` is at most 2^56
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ RANK_MEGABYTES = 256  # a rank of 512 x 512 cells and 1024 x 768 pixels holds ab
 OUT_MEGABYTES = 256
 MOST_HOSTS_AT_ONCE = 32
 # Commands for a host, whose answers begin with a word each. {node} and {check} are the paths of programs there.
-QUESTIONS = (marked_answer.SAY + '; {node} --version --json 2>&1 | say build; '
+QUESTIONS = (marked_answer.SAY + '; echo "reached yes"; {node} --version --json 2>&1 | say build; '
              'mpirun --version 2>&1 | say mpi; '
              '{check} --free-memory 2>&1 | say memory; '
              'df -Pk /dev/shm 2>&1 | say shm; df -Pk "${TMPDIR:-/tmp}" 2>&1 | say tmp; '
@@ -54,6 +54,15 @@ def probed(said):
     if not isinstance(shortcomings, list) or not all(isinstance(line, str) for line in shortcomings):
         return None
     return {key: found[key] for key in ("backend", "renderer", "shortcomings")}
+
+
+def free_mebibytes(host, node, answers):
+    """Returns the free memory in a host's answers [MiB], or None after a red finding that they lack it. `node` is the program there."""
+    said = reachable.FREE.fullmatch(answers.get("memory", ""))
+    if not said:
+        host.add(False, "memory", f"{reachable.check_beside(node)} does not answer ({marked_answer.last_line(answers.get('memory', ''))}); "
+                 "install the same build at the same path everywhere")
+    return int(said[1]) >> 20 if said else None
 
 
 def unsupported(mpi):
@@ -103,7 +112,7 @@ class Doctor:
         check = reachable.check_beside(self.node)
         status, said, complaint = host.ask.run(QUESTIONS.replace("{node}", shlex.quote(self.node)).replace("{check}", shlex.quote(check)))
         answers = marked_answer.named_lines(said)
-        if "memory" not in answers:
+        if "reached" not in answers:
             host.add(False, "ssh", f"cannot be reached: {marked_answer.last_line(complaint) or f'exit status {status}'}; "
                      f"`ssh -o BatchMode=yes {host.name} true` must end with status 0 (docs/hosts.md)")
             return None
@@ -134,12 +143,9 @@ class Doctor:
             host.add(True, "mpi", mpi)
 
     def check_memory(self, host, answers):
-        said = reachable.FREE.fullmatch(answers["memory"])
-        if not said:
-            host.add(False, "memory", f"{reachable.check_beside(self.node)} does not answer ({marked_answer.last_line(answers['memory'])}); "
-                     "install the same build at the same path everywhere")
+        free = free_mebibytes(host, self.node, answers)
+        if free is None:
             return
-        free = int(said[1]) >> 20
         slots = max(1, host.slots)
         needed = RANK_MEGABYTES * slots
         line = f"{free} MiB free, {slots} rank{'s' if slots > 1 else ''} may take {needed}"

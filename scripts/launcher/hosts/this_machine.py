@@ -46,9 +46,10 @@ def largest_side(megabytes):
     return math.isqrt(cells)
 
 
-def check_memory(host, answers):
-    words = answers.get("memory", "").split()
-    free = int(words[0]) // 1024 if words and words[0].isdigit() else 0
+def check_memory(host, node, answers):
+    free = doctor.free_mebibytes(host, node, answers)
+    if free is None:
+        return
     fitting = [side for side in FIELD_SIDES if side <= largest_side(free)]
     words = f"{free} MiB free: " + (f"fields of up to {fitting[-1]} x {fitting[-1]} cells on the desktop wall" if fitting else
                                     f"{FIELD_SIDES[0]} x {FIELD_SIDES[0]} cells on the desktop wall need more; end other programs")
@@ -104,7 +105,7 @@ def examine(node, master, out, backend, as_json):
         if can_start:
             check_start(host, backend)
         check_cores(host)
-        check_memory(host, answers)
+        check_memory(host, node, answers)
         check_display(host, backend)
         check_gl(host, node, backend)
     return examined_host.show([host], as_json)

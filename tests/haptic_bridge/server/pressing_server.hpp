@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "scene/load/scene_file.hpp"
 #include "tests/support/processes/server_process.hpp"
@@ -47,18 +50,20 @@ protected:
         return eventually([&] { return folder_.read("forces").find(word) != std::string::npos; });
     }
 
-    /// Returns the magnitude of each force that the arm took [N].
-    [[nodiscard]] std::vector<double> forces() const {
-        std::vector<double> all;
-        std::istringstream rows(folder_.read("forces"));
-        for (std::string row; std::getline(rows, row) && !rows.eof();) {  // a row that is being written has no end yet
+    /// Returns the magnitude of each force that the arm took [N]. Reads only the rows that are new, because press()
+    /// asks again and again: a master that takes ever longer between its steps would be felt less and less.
+    [[nodiscard]] const std::vector<double>& forces() const {
+        std::ifstream file(folder_.file("forces"));
+        file.seekg(read_);
+        for (std::string row; std::getline(file, row) && !file.eof();) {  // a row that is being written has no end yet
+            read_ += static_cast<std::streamoff>(row.size()) + 1;
             std::istringstream parts(row);
             double time = 0, x = 0, y = 0, z = 0;
             if (parts >> time >> x >> y >> z) {
-                all.push_back(std::sqrt(x * x + y * y + z * z));
+                forces_.push_back(std::sqrt(x * x + y * y + z * z));
             }
         }
-        return all;
+        return forces_;
     }
     /// Returns whether the last 21 forces are above 0, so that the arm presses when a server ends next.
     [[nodiscard]] bool presses() const {
@@ -75,7 +80,7 @@ protected:
 
     /// Returns whether there are so many forces, and the last of them are all so.
     [[nodiscard]] bool lastAre(std::size_t count, const std::function<bool(double)>& so) const {
-        const auto all = forces();
+        const auto& all = forces();
         return all.size() >= count && std::all_of(all.end() - static_cast<std::ptrdiff_t>(count), all.end(), so);
     }
 
@@ -83,6 +88,10 @@ protected:
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
     scene::Scene scene_ = scene::loadScene(sceneFile_);
     std::unique_ptr<haptic_bridge::Client> client_;
+
+private:
+    mutable std::streamoff read_ = 0;     // bytes of the file that forces() has read
+    mutable std::vector<double> forces_;  // in these bytes
 };
 
 /// A server that a shell has started, as a launcher does. When the shell ends, the test is the server's new parent.

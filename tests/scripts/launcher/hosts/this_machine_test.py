@@ -23,17 +23,21 @@ exit 2
 MPIRUN = """#!/bin/sh
 [ -z "$MPI_FAULT" ] || { echo "$MPI_FAULT" >&2; exit 1; }
 """
-SED = """#!/bin/sh
-echo "$MADE_UP_KILOBYTES kB"
+CHECK = """#!/bin/sh
+[ "$1" = --free-memory ] || exec "$0.of_walls" "$@"
+[ -n "$MADE_UP_FREE" ] && echo "free $MADE_UP_FREE"
 """
 
 
 class ThisMachine(LauncherTest):
     def setUp(self):
         super().setUp()
-        for name, text in (("sandwall-render-node", NODE), ("sandwall-master", NODE), ("mpirun", MPIRUN), ("sed", SED)):
+        for name, text in (("sandwall-render-node", NODE), ("sandwall-master", NODE), ("mpirun", MPIRUN)):
             self.script(name, text)
-        self.environment.update(BACKENDS="osmesa egl glfw", MADE_UP_KILOBYTES="8388608")
+        bin = self.folder / "bin"
+        (bin / "sandwall-check").rename(bin / "sandwall-check.of_walls")
+        self.script("sandwall-check", CHECK)
+        self.environment.update(BACKENDS="osmesa egl glfw", MADE_UP_FREE=str(8192 << 20))
 
     def doctor(self, *options):
         return subprocess.run([str(ROOT / "scripts" / "sandwall"), "doctor", "--out", str(self.folder), *options], env=self.environment,
@@ -96,10 +100,14 @@ class ThisMachine(LauncherTest):
 
     def test_memory_decides_the_largest_field(self):
         for megabytes, side in ((256, 0), (310, 512), (460, 1024), (1100, 2048), (8192, 4096)):
-            self.environment["MADE_UP_KILOBYTES"] = str(megabytes * 1024)
+            self.environment["MADE_UP_FREE"] = str(megabytes << 20)
             found = self.findings(0 if side else 1)["memory"]
             self.assertEqual(found["largest_side"], side, megabytes)
         self.assertEqual(this_machine.largest_side(0), 0)
+
+    def test_a_program_that_does_not_tell_the_memory_is_red(self):
+        self.environment["MADE_UP_FREE"] = ""
+        self.assertIn("bin/sandwall-check does not answer ()", self.findings(1)["memory"]["message"])
 
 
 if __name__ == "__main__":
