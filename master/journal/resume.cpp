@@ -53,11 +53,9 @@ public:
           bytes_(how.progress ? static_cast<double>(allBytes(journal)) : 0) {}
 
     void run() {
-        journal::JournalReader reader =
-            how_.opened != nullptr ? openAgain(journal_, *how_.opened) : openJournal(journal_);
-        reader_ = &reader;
+        reader_ = how_.opened != nullptr ? openAgain(journal_, *how_.opened) : openJournal(journal_);
         while (!(how_.beingWritten && replica_.stepNumber() >= step_) && !beyond_) {
-            const auto record = reader.next();
+            const auto record = reader_->next();
             if (!record) {
                 break;
             }
@@ -134,9 +132,9 @@ private:
     sand::Replica& replica_;
     std::optional<Outvoted>& outvoted_;
     const Restoring& how_;
-    const std::uint64_t first_;                       // step of the sand before the replay
-    const double bytes_;                              // of the journal; 0 if nobody asks for the progress
-    const journal::JournalReader* reader_ = nullptr;  // during run()
+    const std::uint64_t first_;                     // step of the sand before the replay
+    const double bytes_;                            // of the journal; 0 if nobody asks for the progress
+    std::optional<journal::JournalReader> reader_;  // since run()
     std::uint64_t read_ = 0;  // last step of the records so far, which the replica may have had already
     bool beyond_ = false;     // a record behind the step has been read, with the hash after it
 };
