@@ -161,8 +161,12 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, const MemoryUse& use, P
     return readScene(cluster, use, options.scene);
 }
 
-/// Returns the name of the scene for the titles of windows: that of its file, or of the folder of its journal.
-std::string sceneName(const ProgramOptions& options) {
+/// Returns the name of the scene for the titles of windows: its own, or that of its file, or of the folder of its
+/// journal. The file of terrain that became a scene, and the folder of a resumed session, have other names.
+std::string sceneName(const ProgramOptions& options, const scene::Scene& loaded) {
+    if (!loaded.name.empty() && loaded.name.size() <= lockstep::kMostText) {
+        return loaded.name;
+    }
     const std::filesystem::path scene(options.scene);
     return !scene.empty() ? scene.stem().string()
                           : std::filesystem::path(options.replay).parent_path().filename().string();
@@ -274,8 +278,10 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
     chooseHand(options);
     chooseView(options, world);
     session.drills = drillsOf(options, world);
-    world.message = {world.scene.encode(), world.wall.encode(), session.frameTimeout,     {},
-                     session.pointer,      sceneName(options),  world.stopped.has_value()};
+    world.message = {world.scene.encode(),     world.wall.encode(),
+                     session.frameTimeout,     {},
+                     session.pointer,          sceneName(options, world.scene),
+                     world.stopped.has_value()};
     for (const Drill& drill : session.drills) {
         world.message.faults.push_back(drill.fault);
     }
