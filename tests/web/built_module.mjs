@@ -8,6 +8,6 @@ const root = new URL("../../", import.meta.url);
 /** Compiles a source of web/, such as "replica/keyframes.ts", and loads it. */
 export async function builtModule(source) {
     const { buildSync } = createRequire(new URL("web/package.json", root))("esbuild");
-    const built = buildSync({ entryPoints: [fileURLToPath(new URL(`web/${source}`, root))], bundle: true, format: "esm", write: false });
+    const built = buildSync({ entryPoints: [fileURLToPath(new URL(`web/${source}`, root))], bundle: true, format: "esm", write: false, loader: { ".glsl": "text" } });
     return import(`data:text/javascript;base64,${Buffer.from(built.outputFiles[0].contents).toString("base64")}`);
 }

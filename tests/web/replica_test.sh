@@ -17,6 +17,7 @@ node tests/web/keeper_test.mjs
 node tests/web/keys_test.mjs
 node tests/web/beginnings_test.mjs
 node tests/web/hand_source_test.mjs
+node tests/web/hidden_tool_test.mjs
 "$1" "$folder" >"$folder/list"
 node tests/web/replica_test.mjs build/web/bin "$folder" "$folder/list"
 

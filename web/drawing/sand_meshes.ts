@@ -4,7 +4,7 @@ import {
     BufferAttribute, BufferGeometry, DataTexture, InterleavedBuffer, InterleavedBufferAttribute, LinearFilter, LinearMipmapNearestFilter, Matrix4,
     type Mesh, RepeatWrapping, RGBAFormat, type Scene, Vector4,
 } from "three";
-import type { Piece, SandMessage } from "../replica/messages";
+import type { Numbers, Piece, SandMessage } from "../replica/messages";
 import { SandPrograms } from "./sand_programs";
 
 export const kTray = 0.46;  // [m], longer side of the field, as on the desktop wall
@@ -44,6 +44,8 @@ function setSolid(mesh: Mesh, numbers: Float32Array): void {
     mesh.geometry = geometry;
 }
 
+const kFarAway = new Float32Array([0, 0, 1e9, 1]);  // uTool without a tool, as shapes/tool/light.hpp has it
+
 export class SandMeshes {
     readonly sceneToRoom: Matrix4;
     readonly programs: SandPrograms;
@@ -53,6 +55,7 @@ export class SandMeshes {
     private readonly solids: Record<string, Mesh>;
     private grain?: DataTexture;
     private toolIsWanted = true;
+    private placeOfTool: Numbers = kFarAway;    // uTool of the last frame
 
     /** Adds the meshes of a session to `scene`. The first pieces that show() gets have all of them. */
     constructor(scene: Scene, { columns, rows, cell, middle }: SandMessage) {
@@ -72,10 +75,11 @@ export class SandMeshes {
         this.grain?.dispose();
     }
 
-    /** Shows the tool, or hides it. */
+    /** Shows the tool, or hides it. A hidden tool takes no light from the sand either. */
     showTool(on: boolean): void {
         this.toolIsWanted = on;
         this.solids.tool.visible = on && this.model.w > 0;
+        this.programs.set("uTool", on ? this.placeOfTool : kFarAway);
     }
     get showsTool(): boolean { return this.solids.tool.visible; }
 
@@ -107,6 +111,7 @@ export class SandMeshes {
         }
         if (piece.uModel) {
             this.model.fromArray(piece.uModel as Float32Array);
+            this.placeOfTool = piece.uTool;
             this.showTool(this.toolIsWanted);
             this.programs.make(piece.ball[0] === 1);
         }
