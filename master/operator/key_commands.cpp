@@ -129,7 +129,7 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
         case KeyAction::humidity:
             return edited(fmt::format("humidity {:.0f} %", 100 * after.material.humidity));
         case KeyAction::reset:
-            return edited("reset");
+            return edited("new sand; Ctrl+Z brings yours back");
         case KeyAction::frameView:
             return "the terrain is framed";
         case KeyAction::pause:
