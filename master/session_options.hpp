@@ -51,8 +51,8 @@ struct SessionOptions {
 
 /// Returns `options` adapted to their recording, if there is one.
 [[nodiscard]] SessionOptions completed(SessionOptions options);
-/// Create the parts of a session that its options choose. stepsOf() returns the steps of a hand or of a recording, and
-/// sandOf() the sand of the scene, or the sand of the resumed session, which it takes.
+/// Create the parts of a session that its options choose. stepsOf() returns the steps of a hand or of a recording.
+/// sandOf() takes the heights of the scene, or the sand of the resumed session.
 [[nodiscard]] std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene,
                                                   Edits& edits);
 [[nodiscard]] MasterSand sandOf(const SessionOptions& options, scene::Scene& scene);

@@ -165,8 +165,8 @@ public:
     }
 
 private:
-    /// Throws base::InputError if this process may not take the memory for the sand, for example because it has a limit
-    /// (ulimit -v). Called before the sand is made.
+    /// Throws base::InputError if this process may not take the memory for the sand, such as under a limit of its
+    /// address space (ulimit -v). Called before the sand is made.
     void requireMemory() const {
         const sand::Rules rules = scene::Scene::decodeRules(message_.scene);
         const scene::SandSize sand{sand::FieldSize::of(rules), rules.ground != 0};
@@ -260,7 +260,7 @@ private:
     }
 
     /// The master may take the limit of a frame for each picture of each rank. So a rank may wait longer until all have
-    /// been received: for the master to take its pictures, and then for the next frame or for the end of the session.
+    /// been received. It waits for the master to take its pictures, and then for the next frame or the session's end.
     void sendPictures(lockstep::FrameBarrier& barrier, bool last) const {
         const auto pictures = static_cast<double>(painter_->pictures().size());
         const double limit = message_.frameTimeout * (1 + pictures * cluster_.renderRanks());  // [s]

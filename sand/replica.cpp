@@ -23,8 +23,8 @@ std::unique_ptr<Surface> cloneOf(const Surface& surface) {
     return surface.clone();
 }
 
-/// Returns the cells of the tool's centres in a step: of the points of its path, and of `before` if the tool was in the
-/// sand there.
+/// Returns the cells of the tool's centres in a step. They are those of the points of its path, and that of `before` if
+/// the tool was in the sand there.
 CellRect wayOf(const Step& step, const ProbePoint& before, bool wasEngaged) {
     const auto cellOf = [](const ProbePoint& at) {
         const int x = at.x >> kProbeBits, y = at.y >> kProbeBits;  // rounded down, also below zero

@@ -205,8 +205,8 @@ public:
     /// Copies at least `cells` further cells of the oldest begun copy, or all that it lacks. Returns false if no begun
     /// copy lacks any. A copy of this replica, or another one in its place, has begun none.
     bool continueCopy(std::int64_t cells) const { return surface_->continueCopy(cells); }
-    /// Returns what makes records of the sand. They are no part of the state. decodeState() follows no record further,
-    /// because the sand before it may have been wrong.
+    /// Returns what makes records of the sand. The state does not contain them. decodeState() follows no record
+    /// further, because the sand before it may have been wrong.
     [[nodiscard]] SurfaceRecorder& recorder() { return *surface_; }
     /// Returns the whole state as compressed bytes, from which another replica can continue.
     /// Takes `expected` bytes of memory at once, so that a large state is not copied while it grows.

@@ -133,7 +133,7 @@ private:
     std::optional<Outvoted>& outvoted_;
     const Restoring& how_;
     const std::uint64_t first_;                     // step of the sand before the replay
-    const double bytes_;                            // of the journal; 0 if nobody asks for the progress
+    const double bytes_;                            // size of the journal; 0 without Restoring::progress
     std::optional<journal::JournalReader> reader_;  // since run()
     std::uint64_t read_ = 0;  // last step of the records so far, which the replica may have had already
     bool beyond_ = false;     // a record behind the step has been read, with the hash after it
@@ -176,7 +176,7 @@ struct Walk {
 
 /// Gives `restored` the sand of the checkpoint of step `at`. Returns false after a line that says why it is left out;
 /// the replica may then have any sand. Only the checkpoint is left out if this machine has no memory: without memory
-/// for a step, the replay cannot go on from any checkpoint.
+/// for a step, no checkpoint helps the replay.
 bool useCheckpoint(const fs::path& journal, std::uint64_t at, const Restoring& how, RestoredSand& restored) {
     const fs::path file = checkpointFile(journal, at);
     try {

@@ -33,11 +33,11 @@ struct RestoredSand {
     std::optional<Outvoted> outvoted;  // if the ranks still had the sand of a wrong majority at the journal's end
 };
 
-/// How the sand is computed from a journal.
+/// Options for computing the sand from a journal.
 struct Restoring {
     const base::Executor* executor = nullptr;  // see sand::Replica
-    // Of the journal's session, with Start::packed; its heights are taken. Null: restoreSand() reads it from the
-    // journal.
+    // Start of the journal's session, with Start::packed. restoreSand() takes its heights. If it is null, restoreSand()
+    // reads it from the journal.
     sand::Start* start = nullptr;
     const journal::JournalReader* opened = nullptr;  // of the journal, before its first record; null: it is opened
     // Uses no checkpoint of a later step.
@@ -53,7 +53,7 @@ struct Restoring {
     std::function<void(double)> progress{};
 };
 
-/// A checkpoint of the last steps before a divergence may hold an error that is not in its hash yet: fluxes show in the
+/// A checkpoint of the last steps before a divergence may hold an error that is not in its hash yet. Fluxes show in the
 /// hash one step later. No check of a majority begins with a checkpoint so young [step].
 inline constexpr std::uint64_t kYoungCheckpoint = 60;
 /// Returns the newest step of a checkpoint from which the decision of a majority after step `step` may be checked.
@@ -78,7 +78,7 @@ base::Bytes replaceByCheckpoint(const std::filesystem::path& file, const journal
 
 /// A session that has stopped, whose journal is open.
 struct StoppedSession {
-    std::filesystem::path journal;  // its file
+    std::filesystem::path journal;  // path of the file
     journal::JournalReader opened;  // of the journal, before its first record
     scene::Scene scene;
     std::shared_ptr<SceneCheck> check;  // of the file of the scene; never null

@@ -35,7 +35,7 @@ void SceneCheck::compare() {
     const auto progress = [this](double share) {
         share_ = share;
         if (stop_) {
-            throw std::runtime_error("the session has ended");  // nobody asks for the result
+            throw std::runtime_error("the session has ended");  // require() is not called any more
         }
     };
     const scene::Scene read =

@@ -38,7 +38,7 @@ IncidentFile::IncidentFile(const std::filesystem::path& folder, bool resumed) : 
     }
     try {
         before_ = kept_ = incidentsOf(file_);
-    } catch (const std::exception& error) {  // not JSON, or a number that is no count
+    } catch (const std::exception& error) {  // such as text that is not JSON, or a negative number
         host::printLine("{}: {}; the summary counts from here on", file_.string(), error.what());
     }
 }

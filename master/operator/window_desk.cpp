@@ -140,7 +140,7 @@ void WindowDesk::enlargeTool() {
     if (desk_.material.toolRadius < toolLimits_.usual) {
         try {
             desk_.carryOut(fmt::format("tool radius={}", toolLimits_.usual), 0);
-        } catch (const base::InputError& error) {  // such as a full disk; the session goes on
+        } catch (const base::InputError& error) {  // such as a full disk; the session continues
             host::printLine("the tool keeps the size of the scene: {}", error.what());
         }
     }

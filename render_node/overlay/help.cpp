@@ -60,7 +60,7 @@ HelpColumns columnsIn(std::span<const HelpEntry> entries, const Face& face, int 
     return columnsOf(entries, face, std::max(1, all));
 }
 
-/// What each tile of the row shows.
+/// Contents of each tile of the row.
 using Shares = std::vector<std::span<const HelpEntry>>;
 
 /// Returns the rows of the share that needs most of them, so that all bars have the same height.

@@ -161,7 +161,7 @@ public:
     /// Writes what copy() and the kept snapshot would, without copying the sand. encodeKept() requires hasKept().
     virtual void encodeInto(base::ByteWriter& writer) const = 0;
     virtual void encodeKept(base::ByteWriter& writer) const = 0;
-    /// How decode() decodes sand.
+    /// Options of decode().
     struct Decoding {
         /// Called again and again, unless it is empty, with the number of bytes that were decoded since the last call.
         /// A TIN never calls it, because a TIN is small.

@@ -245,7 +245,7 @@ SurfaceReader TinSurface::reader() const {
 }
 
 std::function<void()> TinSurface::decode(std::span<const std::uint8_t> sand, std::span<const std::uint8_t> kept,
-                                         const Decoding& /* how */) {
+                                         const Decoding&) {
     const auto next = std::make_shared<const Snapshot>(sand, limits());
     const auto stroke = kept.empty() ? nullptr : std::make_shared<const Snapshot>(kept, limits());
     return [this, next, stroke] {
