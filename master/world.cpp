@@ -164,7 +164,7 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, const MemoryUse& use, P
 /// Returns the name of the scene for the titles of windows: its own, or that of its file, or of the folder of its
 /// journal. The file of terrain that became a scene, and the folder of a resumed session, have other names.
 std::string sceneName(const ProgramOptions& options, const scene::Scene& loaded) {
-    if (!loaded.name.empty() && loaded.name.size() <= lockstep::kMostText) {
+    if (!loaded.name.empty()) {
         return loaded.name;
     }
     const std::filesystem::path scene(options.scene);

@@ -78,7 +78,7 @@ struct Start {
     void decodeSand(base::ByteReader& reader, double cellSize /* [scene unit] */, Keep keep,
                     const std::function<void(std::size_t)>& decoded = {});
 
-    /// Returns the heights of a height field, for a replica. Their mean and volume stay, as does `packed`.
+    /// Gives the heights of a height field to the caller. Their mean and volume stay, as does `packed`.
     [[nodiscard]] HeightField takeHeights();
     /// Returns the heights that takeHeights() has taken, unpacked from `packed`. Throws std::logic_error without it.
     [[nodiscard]] HeightField heightsAgain() const;

@@ -79,7 +79,8 @@ bool fits(const Shares& shares, const Face& face, glm::ivec2 room) {
            });
 }
 
-/// Returns the largest face from `least` to `most` pixels in which each share fits into `room`; null if there is none.
+/// Returns the largest face from `least` to `most` pixels in which each share fits into `room`. Returns null if
+/// no such face has room.
 const Face* faceToFit(const Shares& shares, int least, int most, glm::ivec2 room /* [pixel] */) {
     const Face* best = nullptr;
     for (const Face& face : faces()) {

@@ -122,8 +122,8 @@ private:
     void markAroundMoved();
     /// Adds the marked blocks to the active ones.
     void wakeTouched();
-    /// Removes active blocks that are certainly at rest, where no flux has been written. A field of which little moves
-    /// then needs little memory for fluxes, although its first sweep visits all blocks. Leaves swept_ in any state.
+    /// Removes active blocks that are certainly at rest, where no flux has been written. A field that moves little then
+    /// needs little memory for fluxes, although its first sweep visits all blocks. Leaves swept_ in any state.
     void leaveOutResting(const HeightField& field);
     /// Notes that fluxes of the active blocks may be written.
     void noteWritten();

@@ -152,7 +152,7 @@ public:
     /// thread may read them.
     [[nodiscard]] virtual Copies beginCopy() const = 0;
     /// Copies at least `cells` further cells, or all that are left, into the oldest begun snapshot that is not
-    /// complete. Returns false if there is none.
+    /// complete. Returns false if all begun snapshots are complete.
     virtual bool continueCopy(std::int64_t /* cells */) const { return false; }
     /// Returns the function that decodes snapshots for this surface.
     [[nodiscard]] virtual SurfaceReader reader() const = 0;

@@ -162,7 +162,7 @@ TEST_F(Resuming, OfALargeFieldWithAnotherSceneEndsAsSoonAsTheScenesAreCompared) 
     EXPECT_EQ(runToEnd(with({"--scene", scene("0.1"), "--resume", "--frames", "3"})).status, 0);
 }
 
-/// Untouched walls. The master numbers the steps, and makes none while nothing moves.
+/// Untouched walls. The master numbers the steps, and pauses them while nothing moves.
 class Rest : public SessionTest {
 protected:
     /// Awaits the rest and returns the status that reports it.

@@ -34,7 +34,7 @@ BY_HAND = {
     "sand/model/grid_codec.cpp": "compressed cells",
     "sand/model/movement.cpp": "runs of equal numbers",
     "sand/model/step.cpp": "differences between points of a path",
-    "sand/replica.cpp": "the head of a state",
+    "sand/replica_state.cpp": "the head of a state",
     "sand/tin/snapshot.cpp": "a compressed TIN",
     "sand/tin/tool/imprint.cpp": "the imprint, because every step makes a hash of it",
     "sand/tin/volume/vertex_sand_codec.cpp": "numbers of variable length, and gaps",
